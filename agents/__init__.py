@@ -1,0 +1,1 @@
+"""PPO agents that learn to beat the game."""

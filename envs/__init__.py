@@ -1,0 +1,1 @@
+"""The game and its Gymnasium environments, on nothing but the engine."""

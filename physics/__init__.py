@@ -1,0 +1,1 @@
+"""The collision engine. It knows no game."""
