@@ -1,0 +1,208 @@
+"""Gymnasium's vector environments for stable-baselines3, which has an interface of its own.
+
+`GymnasiumVecEnv` is the only thing between the two. It changes no number: training on it gives
+the same weights, bit for bit, as on stable-baselines3's own `DummyVecEnv` of single environments.
+"""
+
+import time
+from collections.abc import Sequence
+from copy import deepcopy
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from numpy.typing import NDArray
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env.base_vec_env import (
+    VecEnv,
+    VecEnvIndices,
+    VecEnvObs,
+    VecEnvStepReturn,
+)
+
+
+class GymnasiumVecEnv(VecEnv):
+    """A stable-baselines3 `VecEnv` over a Gymnasium `VectorEnv` in SAME_STEP mode.
+
+    The info of a world is empty until its episode ends. Then it is the episode's final info with
+    ``terminal_observation``, ``TimeLimit.truncated`` (cut, not ended: the value of what would have
+    followed counts) and ``episode``, which stable-baselines3's statistics read: return ``r``,
+    length ``l`` in steps, seconds ``t`` since this object was made, what ``info_keywords`` names
+    of the final info, and the sums over the episode's steps of what ``summed_keywords`` names.
+
+    Observations, rewards and infos belong to the caller, also where the environment reuses its
+    arrays (``copy=False``): stable-baselines3 keeps an observation until after the next step, and
+    adds to the rewards.
+    """
+
+    def __init__(
+        self,
+        env: VectorEnv[Any, Any, Any],
+        info_keywords: Sequence[str] = (),
+        summed_keywords: Sequence[str] = (),
+    ) -> None:
+        """Adapt ``env``; raise ValueError unless it restarts worlds in SAME_STEP mode."""
+        mode = env.metadata.get("autoreset_mode")
+        if mode != AutoresetMode.SAME_STEP:
+            raise ValueError(
+                f"stable-baselines3 needs worlds that restart in the step that ends their episode; "
+                f"this environment's autoreset_mode is {mode}: make it with "
+                f"autoreset_mode='SameStep'"
+            )
+        self.env = env
+        self._info_keywords = tuple(info_keywords)
+        self._sums = {key: np.zeros(env.num_envs, np.float64) for key in summed_keywords}
+        self._actions: NDArray[Any] | None = None
+        self._returns = np.zeros(env.num_envs, np.float64)
+        self._lengths = np.zeros(env.num_envs, np.int64)
+        self._start = time.perf_counter()
+        super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
+
+    def reset(self) -> VecEnvObs:
+        """Start an episode in every world, with the seeds and options that were set before."""
+        seeds = None if all(seed is None for seed in self._seeds) else list(self._seeds)
+        # Gymnasium types the seed as one integer, though its own environments take a list.
+        observations, infos = self.env.reset(seed=seeds, options=self._common_options())  # type: ignore[arg-type]
+        self.reset_infos = [world_info(infos, world) for world in range(self.num_envs)]
+        for statistic in (self._returns, self._lengths, *self._sums.values()):
+            statistic[:] = 0
+        self._reset_seeds()
+        self._reset_options()
+        return _own(observations)
+
+    def step_async(self, actions: NDArray[Any]) -> None:
+        """Take the actions [worlds, ...]; `step_wait` carries them out."""
+        self._actions = actions
+
+    def step_wait(self) -> VecEnvStepReturn:
+        """Step all worlds: observations, rewards (float32), dones and infos, one a world."""
+        observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
+        self._returns += rewards
+        self._lengths += 1
+        for key, sums in self._sums.items():
+            sums += infos[key]
+        dones = terminated | truncated
+        world_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for world in np.flatnonzero(dones).tolist():
+            cut = bool(truncated[world] and not terminated[world])
+            world_infos[world] = self._final_info(infos, world, cut)
+            self.reset_infos[world] = world_info(infos, world)
+        return _own(observations), np.array(rewards, np.float32), dones, world_infos
+
+    def _final_info(self, infos: dict[str, Any], world: int, cut: bool) -> dict[str, Any]:
+        """Return what is known at the end of a world's episode, and begin its next one."""
+        info = world_info(infos.get("final_info", {}), world)
+        info["TimeLimit.truncated"] = cut
+        info["terminal_observation"] = deepcopy(infos["final_obs"][world])
+        info["episode"] = {
+            "r": float(self._returns[world]),
+            "l": int(self._lengths[world]),
+            "t": round(time.perf_counter() - self._start, 6),
+            **{key: info[key] for key in self._info_keywords},
+        }
+        for key, sums in self._sums.items():
+            # What the step added belongs to the world's next episode.
+            info["episode"][key] = float(sums[world] - infos[key][world] + info[key])
+        for statistic in (self._returns, self._lengths, *self._sums.values()):
+            statistic[world] = 0
+        return info
+
+    def _common_options(self) -> dict[str, Any] | None:
+        first = self._options[0]
+        if any(options != first for options in self._options):
+            raise ValueError("a Gymnasium vector environment takes the same options for all worlds")
+        return first or None
+
+    def close(self) -> None:
+        """Close the environment."""
+        self.env.close()
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+        """Return a picture of every world, uint8 [height, width, 3]."""
+        frames = self.env.render()
+        return [None] * self.num_envs if frames is None else list(frames)  # type: ignore[arg-type]
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """Return an attribute of each world: the single environment's, or the native batch's."""
+        worlds = list(self._get_indices(indices))
+        get_each = getattr(self.env.unwrapped, "get_attr", None)
+        if get_each is not None:
+            values = get_each(attr_name)
+            return [values[world] for world in worlds]
+        return [getattr(self.env.unwrapped, attr_name)] * len(worlds)
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Set an attribute of every world. Raises ValueError if told to set only some worlds'."""
+        self._demand_all(indices, f"set {attr_name!r}")
+        set_each = getattr(self.env.unwrapped, "set_attr", None)
+        if set_each is not None:
+            set_each(attr_name, value)
+        else:
+            setattr(self.env.unwrapped, attr_name, value)
+
+    def env_method(
+        self,
+        method_name: str,
+        *method_args: Any,
+        indices: VecEnvIndices = None,
+        **method_kwargs: Any,
+    ) -> list[Any]:
+        """Call a method of every world, and return each one's result.
+
+        A native batch is called once; where it returns a list, tuple or array of one item a world,
+        each world gets its item, and otherwise all get the same. Raises ValueError if told to call
+        only some worlds.
+        """
+        self._demand_all(indices, f"call {method_name!r}")
+        call_each = getattr(self.env.unwrapped, "call", None)
+        if call_each is not None:
+            return list(call_each(method_name, *method_args, **method_kwargs))
+        result = getattr(self.env.unwrapped, method_name)(*method_args, **method_kwargs)
+        if isinstance(result, list | tuple | np.ndarray) and len(result) == self.num_envs:
+            return list(result)
+        return [result] * self.num_envs
+
+    def env_is_wrapped(
+        self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
+    ) -> list[bool]:
+        """Tell for each world whether it is wrapped so.
+
+        True for stable-baselines3's `Monitor`, too: this adapter keeps the same statistics.
+        """
+        worlds = list(self._get_indices(indices))
+        if issubclass(wrapper_class, Monitor):
+            return [True] * len(worlds)
+        singles = getattr(self.env.unwrapped, "envs", None)
+        if singles is None:
+            return [False] * len(worlds)
+        return [_is_wrapped(singles[world], wrapper_class) for world in worlds]
+
+    def _demand_all(self, indices: VecEnvIndices, action: str) -> None:
+        if len(set(self._get_indices(indices))) != self.num_envs:
+            raise ValueError(f"cannot {action} for some worlds only: they share one environment")
+
+
+def world_info(infos: dict[str, Any], world: int) -> dict[str, Any]:
+    """Return one world's info of a vector environment's, which masks each key by ``_key``."""
+    info: dict[str, Any] = {}
+    for key, value in infos.items():
+        mask = infos.get(f"_{key}")
+        if mask is None or not mask[world] or key in ("final_obs", "final_info"):
+            continue
+        info[key] = world_info(value, world) if isinstance(value, dict) else deepcopy(value[world])
+    return info
+
+
+def _own(observations: VecEnvObs) -> VecEnvObs:
+    """Return observations that nobody overwrites."""
+    # An array's own copy is several times faster than deepcopy's.
+    return observations.copy() if isinstance(observations, np.ndarray) else deepcopy(observations)
+
+
+def _is_wrapped(env: gym.Env[Any, Any] | gym.Wrapper[Any, Any, Any, Any], wrapper: type) -> bool:
+    while isinstance(env, gym.Wrapper):
+        if isinstance(env, wrapper):
+            return True
+        env = env.env
+    return False
