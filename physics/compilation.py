@@ -6,28 +6,45 @@ compiled or interpreted (``NUMBA_DISABLE_JIT=1``) on every machine.
 
 Numba's own cache notices a change of the file that holds a function, but not of a file that holds
 a function it *calls*, and then runs stale machine code. Here the cache folder of a kernel is named
-after a digest of its own module and of every module of this package that it imports, directly or
-not: to be stale, a kernel would have to call something that it cannot name.
+after a digest of its own file and of every file of this package that it imports, directly or not:
+to be stale, a kernel would have to call something that it cannot name. A constant that a kernel
+reads must therefore be written in source, not computed from the contents of some other file.
+
+The folders lie in ``kernels`` under the user's cache folder, or under ``ARKANOID_CACHE_DIR``. Where
+neither can be written, kernels are compiled anew in every process, and one line says so.
 """
 
 import ast
 import hashlib
 import os
+import re
+import shutil
 import sys
-from collections.abc import Callable
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
-from importlib.util import resolve_name
 from pathlib import Path
+from pickle import UnpicklingError
 from typing import Any, TypeVar
+from uuid import uuid4
 
 import numba
 import platformdirs
 from numba.core import event
+from numba.core.caching import FunctionCache
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 CACHE_VARIABLE = "ARKANOID_CACHE_DIR"
-_ANNOUNCEMENT = "arkanoid: compiling kernels for this machine (once; up to 20 s) ..."
+# Long enough for a project that rests for a holiday, short enough to be no burden (a folder holds
+# a few MB and every edit of a kernel begins new ones).
+PRUNE_AFTER = 30 * 86_400.0  # seconds
+
+_PACKAGE = __name__.rpartition(".physics.")[0]
+_PACKAGE_FOLDER = Path(__file__).resolve().parent.parent
+_FOLDER_NAME = re.compile("[0-9a-f]{16}")
 
 
 def kernel(function: F) -> F:
@@ -36,90 +53,182 @@ def kernel(function: F) -> F:
     IEEE arithmetic throughout (no ``fastmath``), NumPy's error model (a division by zero gives inf
     or nan, not an exception), and the GIL is released, so that threads run kernels in parallel.
     """
-    # Numba takes the folder of a function's cache from this setting, when it is decorated.
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder(function.__module__))
-    try:
-        compiled: F = numba.njit(function, cache=True, nogil=True, error_model="numpy")
-    finally:
-        numba.config.CACHE_DIR = previous
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled: F = numba.njit(function, nogil=True, error_model="numpy")
+    folder = cache_folder(Path(function.__code__.co_filename))
+    if folder is not None and _prepared(folder):
+        _cache_in(folder, compiled)
     return compiled
 
 
-def cache_folder(module_name: str) -> Path:
-    """Return the folder for the machine code of one module's kernels."""
+def cache_folder(file: Path) -> Path | None:
+    """Return the folder for the machine code of the kernels of one source file.
+
+    None if there is no such file: the function was typed at a prompt or lies in an archive.
+    """
+    if not file.is_file():
+        return None
     root = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("arkanoid", False)
+    return Path(root).absolute() / "kernels" / _digest(file.resolve())
+
+
+def _cache_in(folder: Path, compiled: Any) -> None:
+    """Let a dispatcher keep its machine code in ``folder``."""
+    # Numba takes the folder of a function's cache from this setting when the cache is made.
+    previous = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        compiled._cache = _Cache(compiled.py_func)
+    finally:
+        numba.config.CACHE_DIR = previous
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    """Numba's cache of one function, safe beside other processes and on a full or broken disk."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        # Numba numbers the data files of a function's signatures 1, 2, ... Two processes that
+        # compile different signatures at once would both write number 1, and the index could send
+        # one signature to the other's machine code. With a name for each the worst is to compile
+        # twice.
+        stem = self._impl.filename_base
+        self._cache_file._data_name = lambda number: f"{stem}.{uuid4().hex[:16]}.nbc"
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """Load the machine code for one signature; None if there is none that can be read."""
+        try:
+            return super().load_overload(signature, context)
+        except (EOFError, UnpicklingError):  # a file was cut short, by a power failure, say
+            with suppress(OSError):
+                self.flush()
+            return None
+        except OSError:
+            return None
+
+    def save_overload(self, signature: Any, data: Any) -> None:
+        """Save the machine code for one signature, or go on without."""
+        try:
+            super().save_overload(signature, data)
+        except OSError as error:
+            _say_unwritable(Path(self.cache_path).parents[1], error)
+
+
+@cache
+def _prepared(folder: Path) -> bool:
+    """Make the folder, note that it is in use, and tell whether it can be written.
+
+    Numba itself would fall back to ``__pycache__``, and with it to stale machine code.
+    """
+    try:
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _prune(folder.parent)
+        os.utime(folder)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        _say_unwritable(folder.parent, error)
+        return False
+    return True
+
+
+def _prune(kernels: Path) -> None:
+    """Delete the folders of earlier sources that no process has used for ``PRUNE_AFTER``."""
+    for folder in kernels.iterdir():
+        # Only what can be ours: the root may be any folder that the user named.
+        if _FOLDER_NAME.fullmatch(folder.name) and _age(folder) > PRUNE_AFTER:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _age(folder: Path) -> float:
+    """Return the seconds since a process last used the folder, 0 if it is gone already."""
+    try:
+        return time.time() - folder.stat().st_mtime
+    except OSError:
+        return 0.0
+
+
+@cache
+def _digest(file: Path) -> str:
+    """Return the digest of all that the machine code of a file's kernels is made from."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.implementation.cache_tag}".encode())
-    for name in sorted(_import_closure(module_name)):
-        digest.update(_read(name))
-    return Path(root) / digest.hexdigest()[:16]
+    for source in sorted(_import_closure(file)):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
 
 
-def _import_closure(module_name: str) -> set[str]:
-    """Return the module and all modules of its package that it imports, directly or not."""
-    found = {module_name}
-    frontier = [module_name]
+def _import_closure(file: Path) -> frozenset[Path]:
+    """Return the file and all files of the package that it imports, directly or not."""
+    found = {file}
+    frontier = [file]
     while frontier:
-        for name in _relative_imports(frontier.pop()):
-            if name not in found and _source_file(name) is not None:
-                found.add(name)
-                frontier.append(name)
-    return found
+        new = _imported_files(frontier.pop()) - found
+        found |= new
+        frontier += new
+    return frozenset(found)
 
 
 @cache
-def _relative_imports(module_name: str) -> tuple[str, ...]:
-    """Return the modules named in ``from .x import y`` statements (inside the package all are)."""
-    file = _source_file(module_name)
-    assert file is not None
-    is_package = file.name == "__init__.py"
-    package = module_name if is_package else module_name.rpartition(".")[0]
-    names = []
-    for node in ast.walk(ast.parse(_read(module_name))):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            target = resolve_name("." * node.level + (node.module or ""), package)
-            names.append(target)
-            # `from . import x` and `from .package import x` may name modules, too.
-            names += [f"{target}.{alias.name}" for alias in node.names]
-    return tuple(names)
+def _imported_files(file: Path) -> frozenset[Path]:
+    """Return the files of the package that one file names in its import statements."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_bytes())):
+        for folder, dotted in _imported_names(node, file):
+            path = folder.joinpath(*dotted.split("."))
+            found |= {path.with_name(f"{path.name}.py"), path / "__init__.py"}
+    return frozenset(path for path in found if path.is_file())
+
+
+def _imported_names(node: ast.AST, file: Path) -> Iterator[tuple[Path, str]]:
+    """Yield what an import statement may name: a folder, and dotted names below it.
+
+    Inside the package every import is relative; kernels outside of it name the package.
+    """
+    if isinstance(node, ast.ImportFrom) and node.level:
+        folder = file.parents[node.level - 1]
+        dotted = node.module or ""
+    elif isinstance(node, ast.ImportFrom) and node.module:
+        top, _, dotted = node.module.partition(".")
+        if top != _PACKAGE:
+            return
+        folder = _PACKAGE_FOLDER
+    elif isinstance(node, ast.Import):
+        for alias in node.names:
+            top, _, dotted = alias.name.partition(".")
+            if top == _PACKAGE:
+                yield _PACKAGE_FOLDER, dotted
+        return
+    else:
+        return
+    yield folder, dotted
+    # `from . import x` and `from .package import x` may name modules, too.
+    for alias in node.names:
+        yield folder, f"{dotted}.{alias.name}".strip(".")
 
 
 @cache
-def _read(module_name: str) -> bytes:
-    file = _source_file(module_name)
-    return b"" if file is None else file.read_bytes()
+def _say_once(line: str) -> None:
+    print(f"arkanoid: {line}", file=sys.stderr, flush=True)
 
 
-@cache
-def _source_file(module_name: str) -> Path | None:
-    """Return the file of a module of the package, found beside those already imported."""
-    module = sys.modules.get(module_name)
-    if module is not None and getattr(module, "__file__", None):
-        return Path(str(module.__file__))
-    parent, _, leaf = module_name.rpartition(".")
-    parent_module = sys.modules.get(parent)
-    for folder in getattr(parent_module, "__path__", ()):
-        for candidate in (Path(folder) / f"{leaf}.py", Path(folder) / leaf / "__init__.py"):
-            if candidate.is_file():
-                return candidate
-    return None
+def _say_unwritable(folder: Path, error: OSError) -> None:
+    _say_once(
+        f"{folder} cannot be written ({error.strerror}), so every process compiles the kernels "
+        f"anew. Set {CACHE_VARIABLE} to a folder that can."
+    )
 
 
 class _Announcer(event.Listener):  # type: ignore[misc]
     """Says on stderr, once a process, that the wait is for the compiler."""
 
-    def __init__(self) -> None:
-        self.silent = False
-
     def on_start(self, compiling: Any) -> None:
-        package = __name__.rpartition(".physics.")[0]
-        function = compiling.data["dispatcher"].py_func
-        if not self.silent and function.__module__.startswith(package):
-            self.silent = True
-            print(_ANNOUNCEMENT, file=sys.stderr, flush=True)
+        """Tell of the first kernel of this package that is compiled."""
+        if compiling.data["dispatcher"].py_func.__module__.startswith(f"{_PACKAGE}."):
+            _say_once("compiling kernels for this machine (once; up to 20 s) ...")
 
     def on_end(self, compiling: Any) -> None:
-        pass
+        """Say nothing: the next line is the program's own."""
 
 
 event.register("numba:compile", _Announcer())

@@ -1,0 +1,69 @@
+# Every target works alone on a fresh machine: it makes .venv and installs what it needs, first.
+# Another interpreter or place:  make PYTHON=python3.12 VENV=/tmp/arkanoid train
+
+VENV ?= .venv
+BIN = $(VENV)/bin
+# The first Python that is new enough.
+PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11 python; do \
+	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
+	&& echo $$python && break; done)
+INSTALL = $(BIN)/python -m pip install --constraint constraints.txt --editable
+# What decides which packages are installed, and what an editable install remembers.
+REQUIREMENTS = pyproject.toml constraints.txt version.py
+
+.DEFAULT_GOAL = help
+.PHONY: help train test lint types format check bench clean
+
+help:  ## Show the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+train: $(VENV)/train  ## Train an agent for about two minutes, and show how it does
+	$(BIN)/arkanoid train quick
+
+test: $(VENV)/dev  ## Run the tests (PYTEST="-k paddle" passes options on)
+	$(BIN)/python -m pytest -n 2 $(PYTEST)
+
+lint: $(VENV)/dev  ## Check style and format
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+# A type checker finds a package by the name of its folder, and a clone's may be any: so a folder
+# `arkanoid` with links to the packages is made.
+types: $(VENV)/dev  ## Check types
+	rm -rf build/types && mkdir -p build/types/arkanoid
+	for name in py.typed *.py */__init__.py; do \
+		ln -s "$(CURDIR)/$${name%/__init__.py}" build/types/arkanoid || exit; done
+	$(BIN)/mypy
+
+format: $(VENV)/dev  ## Put the sources into format, mend what can be mended
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+check: lint types test  ## All of lint, types and test
+
+bench: $(VENV)/dev  ## Run the benchmarks
+	for benchmark in tests/benchmarks/*.py; do $(BIN)/python $$benchmark || exit; done
+
+clean:  ## Remove what was built and installed (not runs/)
+	rm -rf $(VENV) build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/train: $(REQUIREMENTS) | $(BIN)/python
+	$(INSTALL) '.[train,play]'
+	touch $@
+
+$(VENV)/dev: $(REQUIREMENTS) | $(BIN)/python
+	$(INSTALL) '.[dev]'
+	touch $@ $(VENV)/train
+
+$(BIN)/python:
+	@test -n '$(PYTHON)' || { echo 'arkanoid needs Python 3.11 or newer, and none was found.' \
+		'Install one, or name it: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo 'arkanoid needs Python 3.11 or newer; $(PYTHON) is older or missing.' \
+		'Name another: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' || { \
+		echo '$(PYTHON) lacks the venv module: install it (Debian, Ubuntu: apt install' \
+		'python3-venv), or name another Python: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; \
+		exit 1; }
+	$(PYTHON) -m venv $(VENV)

@@ -1,0 +1,27 @@
+"""What all tests share: the repository's root is the package, not a folder of tests."""
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+class RootIsNotATestPackage:
+    """Keeps pytest from importing the package a second time.
+
+    The root holds an ``__init__.py``, and pytest takes it for a package of tests: it imports it
+    under the name of the folder (whatever a clone is called), with a second copy of every module
+    below. Such a copy must be harmless, but no test should run beside one.
+    """
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_collect_directory(
+        self, path: Path, parent: pytest.Collector
+    ) -> pytest.Collector | None:
+        return pytest.Dir.from_parent(parent, path=path) if path == ROOT else None
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    # Not a plain hook: those of a conftest are asked about what lies below its own folder only.
+    config.pluginmanager.register(RootIsNotATestPackage())
