@@ -27,13 +27,18 @@ _EXTRAS = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; return the exit status (2: the user's mistake, 1: a missing extra)."""
+    """Run the command line; return the exit status.
+
+    0: done; 1: an extra is missing; 2: the user's mistake; 130: Ctrl-C.
+    """
     words, overrides = split_overrides(sys.argv[1:] if argv is None else argv)
     arguments = _parser().parse_args(words)
     try:
         status: int = COMMANDS[arguments.command].run(arguments, overrides)
     except SettingsError as error:
         return _fail(str(error), 2)
+    except KeyboardInterrupt:
+        return _fail("interrupted", 130)
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package not in _EXTRAS:

@@ -1,5 +1,6 @@
 """PPO: building the model, training it, keeping it, and using it as a policy."""
 
+import math
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -103,8 +104,10 @@ class ProgressBar(BaseCallback):
     """Shows decisions a second, and the latest episodes' mean return and brick hits."""
 
     def _on_training_start(self) -> None:
+        # Whole rollouts are played, so that the last one may go beyond what was asked for.
+        rollout = self.model.n_steps * self.training_env.num_envs  # type: ignore[attr-defined]
         self._bar = tqdm(
-            total=self.locals["total_timesteps"],
+            total=math.ceil(self.locals["total_timesteps"] / rollout) * rollout,
             unit=" decisions",
             unit_scale=True,
             # A terminal is redrawn; a file gets few lines.

@@ -37,7 +37,7 @@ class Rule:
     def words(self) -> str:
         """Return the rule as a part of a sentence, empty where there is none."""
         bounds = (("at least", self.at_least), ("above", self.above), ("at most", self.at_most))
-        parts = [f"{name} {bound:g}" for name, bound in bounds if bound is not None]
+        parts = [f"{name} {bound:.10g}" for name, bound in bounds if bound is not None]
         if self.choices is not None:
             parts.append("one of " + ", ".join(map(repr, self.choices)))
         return " and ".join(parts)
@@ -95,7 +95,7 @@ class Leaf:
         if self.is_table or self.is_free:
             return "a table"
         rule = self.rule.words()
-        each = ", each " if self.kind == tuple[int, ...] else " "
+        each = ", each " if self.kind == tuple[int, ...] else ", "
         return _TYPE_NAMES[self.kind] + (each + rule if rule else "")
 
     def checked(self, value: Any, source: str) -> Any:

@@ -69,7 +69,8 @@ def _show(experiment: Experiment, folder: RunFolder) -> None:
 def _settings_help(schema: type[Settings]) -> Iterator[str]:
     for leaf in leaves(schema):
         if not leaf.is_table:
-            yield f"  --{leaf.key}  {leaf.meaning} ({leaf.expected()}; default {leaf.default!r})"
+            key = f"{leaf.key}.KEY" if leaf.is_free else leaf.key
+            yield f"  --{key}  {leaf.meaning} ({leaf.expected()}; default {leaf.default!r})"
 
 
 if __name__ == "__main__":

@@ -80,11 +80,11 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
         ("[training]\nworld = 3", ["'training.world'", "'training.worlds'", "an integer"]),
         ("sede = 3", ["'sede'", "'seed'", "an integer"]),
         ("zzzzqq = 3", ["'zzzzqq'", "nearest known key"]),
-        ('[ppo]\nn_steps = "many"', ["'ppo.n_steps'", "an integer at least 1", "'many'"]),
+        ('[ppo]\nn_steps = "many"', ["'ppo.n_steps'", "an integer, at least 1", "'many'"]),
         ("[ppo]\nn_steps = 1.5", ["'ppo.n_steps'", "an integer", "1.5"]),
         ("[ppo]\nn_steps = true", ["'ppo.n_steps'", "an integer", "True"]),
         ("[ppo]\nn_steps = 0", ["'ppo.n_steps'", "at least 1", "0"]),
-        ("[ppo]\nlearning_rate = 0", ["'ppo.learning_rate'", "a number above 0"]),
+        ("[ppo]\nlearning_rate = 0", ["'ppo.learning_rate'", "a number, above 0"]),
         ("[ppo]\nlearning_rate = nan", ["'ppo.learning_rate'", "a number", "nan"]),
         ("[ppo]\ngamma = 1.5", ["'ppo.gamma'", "at least 0 and at most 1", "1.5"]),
         ("name = 3", ["'name'", "a text", "3"]),
@@ -118,7 +118,7 @@ def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(
         ("ppo.learning_rat", "1", ["'ppo.learning_rat'", "'ppo.learning_rate'"]),
         ("worlds", "1", ["'worlds'", "'training.worlds'"]),
         ("ppo", "1", ["unknown key 'ppo'"]),
-        ("ppo.n_steps", "many", ["'ppo.n_steps'", "an integer at least 1", "'many'"]),
+        ("ppo.n_steps", "many", ["'ppo.n_steps'", "an integer, at least 1", "'many'"]),
         ("ppo.n_steps", "1\nseed = 2", ["'ppo.n_steps'", "an integer"]),
         ("ppo.batch_size", "1000", ["'ppo.batch_size' (1000)"]),
     ],
@@ -153,7 +153,7 @@ def test_every_packaged_config_is_valid(name: str) -> None:
 
 
 def test_a_setting_made_in_python_is_checked_too() -> None:
-    with pytest.raises(SettingsError, match="'gamma' must be a number at least 0 and at most 1"):
+    with pytest.raises(SettingsError, match="'gamma' must be a number, at least 0 and at most 1"):
         Ppo(gamma=2.0)
 
 
