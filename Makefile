@@ -59,10 +59,10 @@ $(VENV)/dev: $(REQUIREMENTS) | $(BIN)/python
 $(BIN)/python:
 	@test -n '$(PYTHON)' || { echo 'arkanoid needs Python 3.11 or newer, and none was found.' \
 		'Install one, or name it: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
 		echo 'arkanoid needs Python 3.11 or newer; $(PYTHON) is older or missing.' \
 		'Name another: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' || { \
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
 		echo '$(PYTHON) lacks the venv module: install it (Debian, Ubuntu: apt install' \
 		'python3-venv), or name another Python: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; \
 		exit 1; }

@@ -42,6 +42,8 @@ CACHE_VARIABLE = "ARKANOID_CACHE_DIR"
 # a few MB and every edit of a kernel begins new ones).
 PRUNE_AFTER = 30 * 86_400.0  # seconds
 
+# Numba's settings that change the machine code, each set by a variable NUMBA_...
+_SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")
 _PACKAGE = __name__.rpartition(".physics.")[0]
 _PACKAGE_FOLDER = Path(__file__).resolve().parent.parent
 _FOLDER_NAME = re.compile("[0-9a-f]{16}")
@@ -152,7 +154,9 @@ def _age(folder: Path) -> float:
 @cache
 def _digest(file: Path) -> str:
     """Return the digest of all that the machine code of a file's kernels is made from."""
-    digest = hashlib.sha256(f"{numba.__version__} {sys.implementation.cache_tag}".encode())
+    settings = [getattr(numba.config, name) for name in _SETTINGS]
+    compiler = f"{numba.__version__} {sys.implementation.cache_tag} {settings}"
+    digest = hashlib.sha256(compiler.encode())
     for source in sorted(_import_closure(file)):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

@@ -181,6 +181,13 @@ def test_edit_recompiles_only_what_can_depend_on_it(scratch: Scratch) -> None:
     assert scratch.run().compiled == ["shifted"]
 
 
+def test_debugging_does_not_run_code_compiled_without(scratch: Scratch) -> None:
+    """Bounds checks found nothing: the machine code came from the cache and had none."""
+    scratch.run()
+    assert scratch.run(NUMBA_BOUNDSCHECK="1").compiled != []
+    assert scratch.run().compiled == []
+
+
 @pytest.mark.parametrize("place", ["below a file", "full"])
 def test_goes_on_without_a_cache(scratch: Scratch, place: str) -> None:
     """An unwritable home or a full disk costs time, not the program.
