@@ -1,0 +1,54 @@
+"""Checks of what users pass: every message says which value, why, and what would do."""
+
+import math
+from collections.abc import Iterable
+from numbers import Real
+from typing import Any
+
+Vector = tuple[float, float]
+
+
+def finite(name: str, value: Any) -> float:
+    """Return a finite number as a float; ValueError or TypeError otherwise."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise TypeError(f"{name} must be a number, but is {value!r}")
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be finite, but is {value!r}")
+    return number
+
+
+def positive(name: str, value: Any) -> float:
+    """Return a finite number above 0 as a float."""
+    number = finite(name, value)
+    if number <= 0.0:
+        raise ValueError(f"{name} must be greater than 0, but is {value!r}")
+    return number
+
+
+def not_negative(name: str, value: Any) -> float:
+    """Return a finite number that is not below 0 as a float."""
+    number = finite(name, value)
+    if number < 0.0:
+        raise ValueError(f"{name} must not be negative, but is {value!r}")
+    return number
+
+
+def vector(name: str, value: Any) -> Vector:
+    """Return two finite numbers as a tuple of floats."""
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        raise TypeError(f"{name} must be two numbers (x, y), but is {value!r}")
+    components = list(value)
+    if len(components) != 2:
+        raise ValueError(f"{name} must be two numbers (x, y), but has {len(components)}: {value!r}")
+    return finite(f"{name}[0]", components[0]), finite(f"{name}[1]", components[1])
+
+
+def duration(name: str, value: Any) -> float:
+    """Return a length of time, perhaps infinite, as a float."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise TypeError(f"{name} must be a number, but is {value!r}")
+    number = float(value)
+    if not number >= 0.0:
+        raise ValueError(f"{name} must be 0 or more, perhaps infinite, but is {value!r}")
+    return number
