@@ -8,11 +8,17 @@ from typing import Any
 Vector = tuple[float, float]
 
 
+def _number(name: str, value: Any) -> float:
+    """Return a real number as a float."""
+    # Asked first because it is quick: most numbers are floats, NumPy's included.
+    if not isinstance(value, float) and (not isinstance(value, Real) or isinstance(value, bool)):
+        raise TypeError(f"{name} must be a number, but is {value!r}")
+    return float(value)
+
+
 def finite(name: str, value: Any) -> float:
     """Return a finite number as a float; ValueError or TypeError otherwise."""
-    if not isinstance(value, Real) or isinstance(value, bool):
-        raise TypeError(f"{name} must be a number, but is {value!r}")
-    number = float(value)
+    number = _number(name, value)
     if not math.isfinite(number):
         raise ValueError(f"{name} must be finite, but is {value!r}")
     return number
@@ -34,6 +40,16 @@ def not_negative(name: str, value: Any) -> float:
     return number
 
 
+def inverse_mass(name: str, value: Any) -> float:
+    """Return 1 / mass; 0 for None, a static body's mass."""
+    if value is None:
+        return 0.0
+    inverse = 1.0 / positive(name, value)
+    if not math.isfinite(inverse):
+        raise ValueError(f"{name} is too small to divide by: {value!r}. Use larger units")
+    return inverse
+
+
 def vector(name: str, value: Any) -> Vector:
     """Return two finite numbers as a tuple of floats."""
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
@@ -46,9 +62,7 @@ def vector(name: str, value: Any) -> Vector:
 
 def duration(name: str, value: Any) -> float:
     """Return a length of time, perhaps infinite, as a float."""
-    if not isinstance(value, Real) or isinstance(value, bool):
-        raise TypeError(f"{name} must be a number, but is {value!r}")
-    number = float(value)
+    number = _number(name, value)
     if not number >= 0.0:
         raise ValueError(f"{name} must be 0 or more, perhaps infinite, but is {value!r}")
     return number

@@ -1,0 +1,20 @@
+"""What can go wrong between two bodies."""
+
+
+class InseparableError(ValueError):
+    """No finite translation separates two regions, so they cannot be moved apart.
+
+    Two half-planes that are not back to back, for instance: each reaches around the other.
+    """
+
+    def __init__(self, a: object, b: object) -> None:
+        super().__init__(
+            f"no finite translation separates {a!r} from {b!r}: their regions reach to infinity in "
+            "directions that cross. Let at most one of the two be open that way"
+        )
+        self.a = a
+        self.b = b
+
+    def __reduce__(self) -> tuple[type["InseparableError"], tuple[object, object]]:
+        """Let the error be pickled, across processes for instance."""
+        return type(self), (self.a, self.b)
