@@ -1,0 +1,39 @@
+"""What the single and the vector environment share: spaces, commands, metadata, checks."""
+
+from typing import Any
+
+from gymnasium import spaces
+
+from .batch import COMMANDS
+from .config import Config
+from .rules import TICKS_PER_SECOND
+
+RENDER_MODES = ("rgb_array", "human")
+METADATA: dict[str, Any] = {
+    "render_modes": list(RENDER_MODES),
+    # At the default frame skip of 4; `render_fps` of an instance follows its own frame skip.
+    "render_fps": TICKS_PER_SECOND // 4,
+}
+
+
+def action_space(config: Config) -> spaces.Discrete:
+    """Return the space of one action."""
+    return spaces.Discrete(len(COMMANDS[config.actions]))
+
+
+def instance_metadata(config: Config) -> dict[str, Any]:
+    """Return an environment's metadata, its frames a second according to its frame skip."""
+    return METADATA | {"render_fps": max(1, TICKS_PER_SECOND // config.frame_skip)}
+
+
+def check_render_mode(render_mode: str | None, legal: tuple[str, ...]) -> None:
+    """Refuse an unknown render mode with a ValueError."""
+    if render_mode is not None and render_mode not in legal:
+        raise ValueError(f"render_mode must be None or one of {legal}; got {render_mode!r}")
+
+
+def check_options(options: dict[str, Any] | None) -> None:
+    """Refuse unknown reset options with a ValueError."""
+    unknown = set(options or {}) - {"reset_mask"}
+    if unknown:
+        raise ValueError(f"unknown reset option {sorted(unknown)[0]!r}; known: 'reset_mask'")

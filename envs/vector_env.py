@@ -1,0 +1,196 @@
+"""`ArkanoidVectorEnv`: many games as one Gymnasium vector environment, stepped by one kernel."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from .batch import Autoreset, Batch
+from .config import Config
+from .interface import action_space, check_options, check_render_mode, instance_metadata
+from .observation import LAYOUT, vector_space
+from .state import INFO_FIELDS
+
+Observations = NDArray[np.float32]
+
+_MODES = {
+    AutoresetMode.DISABLED: Autoreset.DISABLED,
+    AutoresetMode.NEXT_STEP: Autoreset.NEXT_STEP,
+    AutoresetMode.SAME_STEP: Autoreset.SAME_STEP,
+}
+
+
+class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], Any]):
+    """Many games of Arkanoid, equal bit for bit to `SyncVectorEnv` of `ArkanoidEnv`.
+
+    Args:
+        num_envs: the number of worlds.
+        render_mode: ``"rgb_array"`` or None.
+        autoreset_mode: a Gymnasium `AutoresetMode` or its text (``"NextStep"``, ``"SameStep"``,
+            ``"Disabled"``).
+        copy: whether `reset` and `step` return fresh arrays. With False they return the same
+            arrays each time, overwritten by the next step.
+        threads: how many threads step the worlds at the most; None lets their number decide.
+            It changes no bit of the results.
+        **keywords: the rules and the interface, see `Config`.
+
+    Raises:
+        TypeError, ValueError: a keyword is unknown or its value is illegal.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        render_mode: str | None = None,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
+        threads: int | None = None,
+        **keywords: Any,
+    ) -> None:
+        check_render_mode(render_mode, ("rgb_array",))
+        if num_envs < 1:
+            raise ValueError(f"num_envs must be at least 1; got {num_envs!r}")
+        if threads is not None and threads < 1:
+            raise ValueError(f"threads must be None or at least 1; got {threads!r}")
+        self.config = Config.from_keywords(keywords)
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        self.copy = copy
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = instance_metadata(self.config) | {"autoreset_mode": self.autoreset_mode}
+        self.single_observation_space = vector_space()
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.single_action_space = action_space(self.config)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.layout = LAYOUT
+        self._mode = _MODES[self.autoreset_mode]
+        self._batch = Batch(num_envs, self.config, self._mode, threads)
+        self._seeded = np.zeros(num_envs, np.bool_)
+        self._everywhere = np.ones(num_envs, np.bool_)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Begin an episode in every world, or in those of ``options["reset_mask"]`` (bool [n]).
+
+        An int seeds world ``i`` with ``seed + i``; a sequence gives each world's own seed; None
+        goes on with each world's generator.
+        """
+        super().reset(seed=seed if isinstance(seed, int) else None)
+        check_options(options)
+        mask = self._everywhere
+        if options and "reset_mask" in options:
+            mask = self._reset_mask(options["reset_mask"])
+        self._seed(seed, mask)
+        self._batch.reset(mask)
+        return self._observations(), self._infos(self._batch.outcomes, mask)
+
+    def step(
+        self, actions: Any
+    ) -> tuple[
+        Observations,
+        NDArray[np.float64],
+        NDArray[np.bool_],
+        NDArray[np.bool_],
+        dict[str, Any],
+    ]:
+        """Play one decision in every world.
+
+        Args:
+            actions: integers [n].
+        """
+        batch = self._batch
+        if self._mode is Autoreset.DISABLED and batch.worlds["done"].any():
+            done = np.flatnonzero(batch.worlds["done"])[:8].tolist()
+            raise RuntimeError(
+                f"the episodes of worlds {done} are over: with autoreset_mode='Disabled' reset "
+                "them before the next step, reset(options={'reset_mask': ...})"
+            )
+        batch.command(actions)
+        batch.step()
+        outcomes = batch.outcomes
+        infos: dict[str, Any] = {}
+        terminated = outcomes["terminated"].copy()
+        truncated = outcomes["truncated"].copy()
+        if self._mode is Autoreset.SAME_STEP:
+            infos = self._final_infos(terminated | truncated)
+        infos |= self._infos(outcomes, self._everywhere)
+        return self._observations(), outcomes["reward"].copy(), terminated, truncated, infos
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Return a frame of each world, uint8 [height, width, 3]."""
+        if self.render_mode is None:
+            return None
+        # Imported on demand: playing without pictures needs none of the drawing kernels.
+        from .render import draw_world
+
+        batch = self._batch
+        return tuple(
+            draw_world(batch.worlds, batch.rules, batch.levels, index)
+            for index in range(self.num_envs)
+        )
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """End the threads."""
+        self._batch.close()
+
+    def _seed(self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]) -> None:
+        """Seed the masked worlds; one never seeded gets a seed from the system's entropy."""
+        if seed is None:
+            seeds: Sequence[int | None] = [None] * self.num_envs
+        elif isinstance(seed, int | np.integer):
+            seeds = [int(seed) + index for index in range(self.num_envs)]
+        else:
+            seeds = seed
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"{len(seeds)} seeds for {self.num_envs} worlds; give one for each")
+        for index in np.flatnonzero(mask).tolist():
+            chosen = seeds[index]
+            if chosen is None and not self._seeded[index]:
+                chosen = int(self.np_random.integers(1 << 62))
+            if chosen is not None:
+                self._batch.seed(index, int(chosen))
+                self._seeded[index] = True
+
+    def _reset_mask(self, mask: Any) -> NDArray[np.bool_]:
+        if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+            raise TypeError(f"options['reset_mask'] must be a NumPy array of bool; got {mask!r}")
+        if mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(
+                f"options['reset_mask'] must have shape ({self.num_envs},) and a True in it; "
+                f"got {mask!r}"
+            )
+        return mask
+
+    def _observations(self) -> Observations:
+        observations = self._batch.observations
+        return observations.copy() if self.copy else observations
+
+    def _infos(self, outcomes: Any, mask: NDArray[np.bool_]) -> dict[str, Any]:
+        """Return each outcome's field and the mask of the worlds that have it."""
+        infos: dict[str, Any] = {}
+        for key, field in INFO_FIELDS.items():
+            infos[key] = np.where(mask, outcomes[field], 0)
+            infos[f"_{key}"] = mask.copy()
+        return infos
+
+    def _final_infos(self, done: NDArray[np.bool_]) -> dict[str, Any]:
+        """Return the last observations and infos of the episodes that ended in this step."""
+        if not done.any():
+            return {}
+        final = np.full(self.num_envs, None, object)
+        for index in np.flatnonzero(done):
+            final[index] = self._batch.final_observations[index].copy()
+        return {
+            "final_obs": final,
+            "_final_obs": done,
+            "final_info": self._infos(self._batch.finals, done),
+            "_final_info": done.copy(),
+        }

@@ -1,0 +1,223 @@
+"""The environments keep Gymnasium's and stable-baselines3's contracts."""
+
+import arkanoid  # noqa: F401
+import gymnasium as gym
+import numpy as np
+import pytest
+from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+# Episodes that end often, in both ways, and use every random draw.
+LIVELY = {"lives": 1, "max_decisions": 60, "sticky_action": 0.25, "speed": 3.0}
+
+
+@pytest.mark.parametrize("actions", ["discrete6", "discrete3"])
+def test_gymnasium_env_checker(actions):
+    env = gym.make("Arkanoid-v0", actions=actions, render_mode="rgb_array")
+    check_env(env.unwrapped)
+    env.close()
+    env.close()
+
+
+def test_stable_baselines3_env_checker():
+    checker = pytest.importorskip("stable_baselines3.common.env_checker")
+    checker.check_env(gym.make("Arkanoid-v0", render_mode="rgb_array"))
+
+
+def test_spec_survives_json():
+    env = gym.make("Arkanoid-v0", frame_skip=2, levels=["ripple"])
+    restored = gym.make(gym.envs.registration.EnvSpec.from_json(env.spec.to_json()))
+    assert restored.unwrapped.config == env.unwrapped.config
+
+
+def test_make_with_module_prefix():
+    assert isinstance(gym.make("arkanoid:Arkanoid-v0").unwrapped, ArkanoidEnv)
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_make_vec_is_native(mode):
+    env = gym.make_vec(
+        "Arkanoid-v0", 3, vectorization_mode="vector_entry_point", autoreset_mode=mode.value
+    )
+    assert isinstance(env, ArkanoidVectorEnv)
+    assert env.metadata["autoreset_mode"] is mode
+    observations, _ = env.reset(seed=1)
+    assert env.observation_space.contains(observations)
+    env.close()
+
+
+def test_render_fps_is_an_integer_that_follows_the_frame_skip():
+    env = ArkanoidEnv(frame_skip=2)
+    assert type(env.metadata["render_fps"]) is int
+    assert env.metadata["render_fps"] == 30
+
+
+def make_pair(count, mode, **keywords):
+    """Return the native vector env and Gymnasium's own of single ones."""
+    native = ArkanoidVectorEnv(count, autoreset_mode=mode, **keywords)
+    single = SyncVectorEnv([lambda: ArkanoidEnv(**keywords)] * count, autoreset_mode=mode)
+    return native, single
+
+
+def assert_same(one, other):
+    """Assert that two nested results hold the same bits, dtypes and keys."""
+    assert type(one) is type(other)
+    if isinstance(one, dict):
+        assert one.keys() == other.keys()
+        for key in one:
+            assert_same(one[key], other[key])
+    elif isinstance(one, (tuple, list)) or (isinstance(one, np.ndarray) and one.dtype == object):
+        assert len(one) == len(other)
+        for first, second in zip(one, other, strict=True):
+            assert_same(first, second)
+    elif isinstance(one, np.ndarray):
+        assert one.dtype == other.dtype
+        assert one.tobytes() == other.tobytes()
+    else:
+        assert one == other
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+def test_native_equals_sync(mode):
+    native, single = make_pair(7, mode, **LIVELY)
+    assert_same(native.reset(seed=3), single.reset(seed=3))
+    native.action_space.seed(0)
+    ends = 0
+    for _ in range(3000):
+        actions = native.action_space.sample()
+        result = native.step(actions)
+        assert_same(result, single.step(actions))
+        ends += result[2].sum() + result[3].sum()
+    assert ends > 100
+
+
+def test_native_equals_sync_when_the_user_resets():
+    native, single = make_pair(5, AutoresetMode.DISABLED, **LIVELY)
+    assert_same(native.reset(seed=[9, 8, 7, 6, 5]), single.reset(seed=[9, 8, 7, 6, 5]))
+    native.action_space.seed(0)
+    resets = 0
+    for _ in range(1000):
+        actions = native.action_space.sample()
+        result = native.step(actions)
+        assert_same(result, single.step(actions))
+        done = result[2] | result[3]
+        if done.any():
+            resets += 1
+            seeds = [100 + resets if index % 2 else None for index in range(5)]
+            assert_same(
+                native.reset(seed=seeds, options={"reset_mask": done}),
+                single.reset(seed=seeds, options={"reset_mask": done}),
+            )
+    assert resets > 20
+
+
+def test_a_finished_world_must_be_reset_in_disabled_mode():
+    env = ArkanoidVectorEnv(2, autoreset_mode="Disabled", max_decisions=1)
+    env.reset(seed=0)
+    env.step(np.zeros(2, int))
+    with pytest.raises(RuntimeError, match="reset_mask"):
+        env.step(np.zeros(2, int))
+
+
+def play(env, steps, seed):
+    """Return all that a vector env's worlds show over a fixed random play."""
+    generator = np.random.default_rng(0)
+    shown = [env.reset(seed=seed)[0].copy()]
+    for _ in range(steps):
+        # Each world's actions depend on its own index only, never on the batch's size.
+        actions = generator.integers(0, 6, 1024)[: env.num_envs]
+        observations, rewards, *_ = env.step(actions)
+        shown += [observations.copy(), rewards[:, None].astype(np.float32)]
+    env.close()
+    return shown
+
+
+def test_neither_batch_size_nor_threads_change_a_bit():
+    reference = play(ArkanoidVectorEnv(1024, threads=1, **LIVELY), 200, 5)
+    for count, threads, copy in [(1024, 2, True), (1024, 7, False), (33, 2, True), (1, 1, True)]:
+        other = play(ArkanoidVectorEnv(count, threads=threads, copy=copy, **LIVELY), 200, 5)
+        for one, two in zip(reference, other, strict=True):
+            assert one[:count].tobytes() == two.tobytes()
+
+
+def test_copy_decides_who_owns_the_observations():
+    for copy in (True, False):
+        env = ArkanoidVectorEnv(2, copy=copy)
+        first, _ = env.reset(seed=0)
+        second = env.step(np.array([1, 2]))[0]
+        assert np.shares_memory(first, second) is not copy
+
+
+def test_single_env_returns_fresh_observations_and_infos():
+    env = ArkanoidEnv()
+    first, info = env.reset(seed=0)
+    second, _, _, _, later = env.step(1)
+    assert not np.shares_memory(first, second)
+    assert info is not later
+
+
+def test_no_seed_goes_on_and_unseeded_envs_differ():
+    first, second = ArkanoidEnv(), ArkanoidEnv()
+    served = []
+    for env in (first, second):
+        env.reset()
+        for _ in range(20):
+            observation = env.step(3)[0]
+        served.append(observation[env.layout["ball_vx"]][0])
+    assert served[0] != served[1]
+
+
+@pytest.mark.parametrize(
+    ("keywords", "error", "message"),
+    [
+        ({"frame_skp": 2}, TypeError, "did you mean 'frame_skip'"),
+        ({"frame_skip": 0}, ValueError, "frame_skip must be between 1"),
+        ({"frame_skip": 2.0}, TypeError, "frame_skip must be an integer"),
+        ({"speed": float("nan")}, ValueError, "speed must be between"),
+        ({"speed": "fast"}, TypeError, "speed must be a number"),
+        ({"sticky_action": 1.5}, ValueError, "sticky_action must be between 0 and 1"),
+        ({"actions": "buttons"}, ValueError, "'discrete6', 'discrete3'"),
+        ({"levels": ["riple"]}, ValueError, "Did you mean 'ripple'"),
+        ({"levels": "ripple"}, TypeError, "levels must be a non-empty sequence"),
+        ({"levels": []}, TypeError, "levels must be a non-empty sequence"),
+        ({"render_mode": "ansi"}, ValueError, "render_mode must be None or one of"),
+    ],
+)
+def test_bad_keywords_are_refused(keywords, error, message):
+    with pytest.raises(error, match=message):
+        ArkanoidEnv(**keywords)
+    with pytest.raises(error, match=message):
+        ArkanoidVectorEnv(2, **keywords)
+
+
+def test_bad_arguments_of_the_vector_env_are_refused():
+    with pytest.raises(ValueError, match="num_envs"):
+        ArkanoidVectorEnv(0)
+    with pytest.raises(ValueError, match="threads"):
+        ArkanoidVectorEnv(1, threads=0)
+    env = ArkanoidVectorEnv(2, autoreset_mode="Disabled")
+    with pytest.raises(ValueError, match="1 seeds for 2 worlds"):
+        env.reset(seed=[1])
+    with pytest.raises(TypeError, match="NumPy array of bool"):
+        env.reset(options={"reset_mask": [True, False]})
+    with pytest.raises(ValueError, match="shape"):
+        env.reset(options={"reset_mask": np.zeros(2, bool)})
+    with pytest.raises(ValueError, match="unknown reset option 'levle'"):
+        env.reset(options={"levle": 1})
+
+
+@pytest.mark.parametrize("action", [-1, 6])
+def test_illegal_actions_are_refused(action):
+    env = ArkanoidEnv()
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r"not in Discrete\(6\)"):
+        env.step(action)
+    envs = ArkanoidVectorEnv(2)
+    envs.reset(seed=0)
+    with pytest.raises(ValueError, match=rf"action {action} of world 1 is not in Discrete\(6\)"):
+        envs.step(np.array([0, action]))
+    with pytest.raises(ValueError, match="2 integers, one for each world"):
+        envs.step(np.zeros(3, int))
+    with pytest.raises(ValueError, match="2 integers, one for each world"):
+        envs.step(np.zeros(2))
