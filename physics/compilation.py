@@ -42,6 +42,7 @@ CACHE_VARIABLE = "ARKANOID_CACHE_DIR"
 # a few MB and every edit of a kernel begins new ones).
 PRUNE_AFTER = 30 * 86_400.0  # seconds
 
+_BEGAN = time.time()
 # Numba's settings that change the machine code, each set by a variable NUMBA_...
 _SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")
 _PACKAGE = __name__.rpartition(".physics.")[0]
@@ -67,9 +68,10 @@ def kernel(function: F) -> F:
 def cache_folder(file: Path) -> Path | None:
     """Return the folder for the machine code of the kernels of one source file.
 
-    None if there is no such file: the function was typed at a prompt or lies in an archive.
+    None if there is no such file (the function was typed at a prompt or lies in an archive), or if
+    sources were edited since this process began and need not be what it has imported.
     """
-    if not file.is_file():
+    if not file.is_file() or _last_edit(file.resolve()) > _BEGAN:
         return None
     root = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("arkanoid", False)
     return Path(root).absolute() / "kernels" / _digest(file.resolve())
@@ -152,6 +154,12 @@ def _age(folder: Path) -> float:
 
 
 @cache
+def _last_edit(file: Path) -> float:
+    """Return when the file or one that it imports was edited, in seconds since the epoch."""
+    return max(source.stat().st_mtime for source in _import_closure(file))
+
+
+@cache
 def _digest(file: Path) -> str:
     """Return the digest of all that the machine code of a file's kernels is made from."""
     settings = [getattr(numba.config, name) for name in _SETTINGS]
@@ -162,6 +170,7 @@ def _digest(file: Path) -> str:
     return digest.hexdigest()[:16]
 
 
+@cache
 def _import_closure(file: Path) -> frozenset[Path]:
     """Return the file and all files of the package that it imports, directly or not."""
     found = {file}

@@ -174,6 +174,24 @@ def test_every_form_of_import_is_followed(scratch: Scratch, statement: str, call
     assert scratch.run().result == 61.0
 
 
+def test_edit_during_a_start_is_not_lost(scratch: Scratch) -> None:
+    """A source was saved just after a process had imported it, and before its digest was taken.
+
+    The old machine code then lay in the new digest's folder, and every later process ran it.
+    """
+    during = scratch.run("""
+import pathlib, time
+from arkanoid.physics import callee
+time.sleep(0.1)  # the clock of files is coarse
+file = pathlib.Path(callee.__file__)
+file.write_text(file.read_text().replace("x * FACTOR", "x * FACTOR + 100.0"))
+from arkanoid.envs.caller import shifted
+report(shifted(10.0))
+""")
+    assert during.result == 21.0
+    assert scratch.run().result == 121.0
+
+
 def test_edit_recompiles_only_what_can_depend_on_it(scratch: Scratch) -> None:
     scratch.run()
     scratch.replace("arkanoid/envs/caller.py", "1.0", "2.0")
