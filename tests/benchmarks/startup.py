@@ -1,0 +1,65 @@
+"""How long a program waits for its first step, with and without compiled kernels on disk.
+
+Run with ``python tests/benchmarks/startup.py``. Every line is a new process. Cold, the folder of
+compiled kernels is empty (once after an installation or an edit of a kernel); warm is every later
+start. The goals are 20 s cold and 1.5 s warm on two cores.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+GOALS = {"cold": 20.0, "warm": 1.5}  # seconds
+PHASES = ("import", "make", "reset", "step")
+PROGRAM = """
+import json, sys, time
+times = [time.perf_counter()]
+def done(): times.append(time.perf_counter())
+import gymnasium as gym
+import arkanoid
+done()
+env = gym.make("arkanoid:Arkanoid-v0")
+done()
+env.reset(seed=0)
+done()
+env.step(env.action_space.sample())
+done()
+env.close()
+print(json.dumps([after - before for before, after in zip(times, times[1:])]))
+"""
+
+
+def measure(cache: str) -> list[float]:
+    """Return the seconds of each phase in a new process that keeps its kernels in ``cache``."""
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env={**os.environ, "ARKANOID_CACHE_DIR": cache},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    seconds: list[float] = json.loads(done.stdout)
+    return seconds
+
+
+def show(start: str, seconds: list[float]) -> None:
+    columns = "".join(f"{value:9.3f}" for value in (*seconds, sum(seconds)))
+    print(f"{start:8}{columns}{GOALS[start]:9.1f}", flush=True)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--warm", type=int, default=5, help="number of warm starts (default: 5)")
+    warm_starts = parser.parse_args().warm
+    print(f"{'seconds':8}{''.join(f'{name:>9}' for name in (*PHASES, 'total', 'goal'))}")
+    with tempfile.TemporaryDirectory() as cache:
+        show("cold", measure(cache))
+        for _ in range(warm_starts):
+            show("warm", measure(cache))
+
+
+if __name__ == "__main__":
+    main()
