@@ -1,0 +1,43 @@
+"""Whoever starts a program a second time does not wait for the compiler."""
+
+import json
+import subprocess
+import sys
+
+PROGRAM = """
+import json, sys
+from numba.core import event
+recorder = event.RecordingListener()
+event.register("numba:compile", recorder)
+
+import gymnasium as gym
+env = gym.make("arkanoid:Arkanoid-v0", render_mode="rgb_array")
+env.reset(seed=0)
+env.step(env.action_space.sample())
+env.render()
+env.close()
+
+for mode in ("NextStep", "SameStep", "Disabled"):
+    envs = gym.make_vec("Arkanoid-v0", 4, "vector_entry_point", autoreset_mode=mode)
+    envs.reset(seed=0)
+    envs.step(envs.action_space.sample())
+    envs.close()
+
+print(json.dumps([str(e.data["dispatcher"].py_func) for _, e in recorder.buffer if e.is_start]))
+"""
+
+
+def compiled_functions() -> list[str]:
+    """Run the program in a new process, warnings being errors; return what it compiled."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", PROGRAM], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    functions: list[str] = json.loads(done.stdout)
+    return functions
+
+
+def test_a_second_start_compiles_nothing() -> None:
+    """Also: no kernel is such that Numba cannot cache it, of which it would warn."""
+    compiled_functions()
+    assert compiled_functions() == []
