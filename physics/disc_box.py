@@ -3,7 +3,6 @@
 import math
 
 from .compilation import kernel
-from .disc_disc import sweep_point_disc
 from .disc_face import sweep_disc_face
 from .vectors import direction
 
@@ -59,18 +58,18 @@ def sweep_disc_box(
     gap_y = (abs(dy) - half_height) - radius
     if (gap_x >= 0.0 and vx >= 0.0) or (gap_y >= 0.0 and vy >= 0.0):
         return math.inf, 0.0, 0.0
-    if gap_x < 0.0 and gap_y < 0.0:
-        found, normal_x, normal_y, _, _, _ = contact_disc_box(
-            radius, half_width, half_height, dx, dy
-        )
-        if found:
-            return 0.0, normal_x, normal_y
-        # Inside the square about the rounded corner, outside the rounding.
-        time, normal_x, normal_y = sweep_point_disc(
-            radius, abs(dx) - half_width, abs(dy) - half_height, vx, vy
-        )
-    elif gap_y < 0.0 or (gap_x >= 0.0 and gap_x * vy <= gap_y * vx):
-        # The face entered last is the one that is hit (compared without a division).
+    # The face entered last is the one that is hit (compared without a division). Within reach of
+    # both, but not of the box, the disc is beyond their corner.
+    is_x_last = gap_y < 0.0 or gap_x * vy <= gap_y * vx
+    if gap_x < 0.0:
+        is_x_last = gap_x >= gap_y
+        if gap_y < 0.0:
+            found, normal_x, normal_y, _, _, _ = contact_disc_box(
+                radius, half_width, half_height, dx, dy
+            )
+            if found:
+                return 0.0, normal_x, normal_y
+    if is_x_last:
         low = abs(dy) - half_height
         high = abs(dy) + half_height
         time, normal_x, normal_y = sweep_disc_face(radius, abs(dx) - half_width, low, high, vx, vy)

@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 from .compilation import kernel
-from .disc_disc import sweep_point_disc
 from .disc_face import sweep_disc_face
 from .vectors import direction
 
@@ -81,7 +80,7 @@ def contact_disc_convex(
 def _sweep_edge(
     radius: float, edge: Any, dx: float, dy: float, vx: float, vy: float
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y) for the edge whose line the disc meets last."""
+    """Return (time, normal_x, normal_y) for the edge that the disc meets, if any."""
     # The face's frame: across it toward the region, and to the left of that.
     across_x = -edge.normal_x
     across_y = -edge.normal_y
@@ -117,7 +116,7 @@ def sweep_disc_convex(
     duration: float,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y); the region's body starts at (dx, dy), flies (vx, vy)."""
-    entry = -1.0
+    enter = -1.0
     last = -1
     for index in range(first, first + count):
         edge = edges[index]
@@ -127,22 +126,19 @@ def sweep_disc_convex(
             if approach <= 0.0:
                 return math.inf, 0.0, 0.0
             time = gap / approach
-            if time > entry:
-                entry, last = time, index
-    if entry > duration:
+            if time > enter:
+                enter, last = time, index
+    if enter > duration:
         return math.inf, 0.0, 0.0
-    if last >= 0:
-        time, normal_x, normal_y = _sweep_edge(radius, edges[last], dx, dy, vx, vy)
-    else:
+    if last < 0:
         found, normal_x, normal_y, _, _, _ = contact_disc_convex(
             radius, edges, first, count, dx, dy
         )
         if found:
             return 0.0, normal_x, normal_y
         # Within reach of every face's line, but not of the region: beyond a corner.
-        index, _ = farthest_edge(edges, first, count, dx, dy)
-        _, corner_x, corner_y = nearest_corner(edges[index], dx, dy)
-        time, normal_x, normal_y = sweep_point_disc(radius, corner_x, corner_y, vx, vy)
+        last, _ = farthest_edge(edges, first, count, dx, dy)
+    time, normal_x, normal_y = _sweep_edge(radius, edges[last], dx, dy, vx, vy)
     if time > duration:
         return math.inf, 0.0, 0.0
     return time, normal_x, normal_y

@@ -13,23 +13,32 @@ def sweep_disc_face(
 ) -> tuple[float, float, float]:
     """Return (time, normal_across, normal_along) at which a disc about 0 meets a face, or inf.
 
-    The face lies across the first axis at ``height >= radius``, spans ``low`` to ``high`` along
-    the second one (infinite where it is open) and flies with (speed < 0, slide). It must be the
-    face whose line the disc meets last: then the disc meets the flat, or a corner, or nothing.
+    The face lies across the first axis at ``height``, spans ``low`` to ``high`` along the second
+    one (infinite where it is open) and flies with (speed, slide). It must be the face whose line
+    the disc meets last (height >= radius, speed < 0): then the disc meets the flat, or a corner, or
+    nothing. Or the disc is within reach of all lines, beyond a corner of this face.
     """
-    # Where the disc meets the line, times the speed: no division, so that the decision is right
-    # for flights almost along the face, and that its ends agree with the corners' own test.
+    # How far beyond the ends the disc meets the line, times the speed. No division, so that this
+    # is right for flights almost along the face, too, and agrees with the corners' own test.
     reach = radius * slide
-    if low > -math.inf and cross(height, low, speed, slide) > reach:
-        corner, inward = low, slide < 0.0
-    elif high < math.inf and cross(height, high, speed, slide) < reach:
-        corner, inward = high, slide > 0.0
-    else:
+    is_near = height < radius
+    corner = low
+    is_flat = True
+    passing = 0.0
+    if low > -math.inf:
+        passing = cross(height, low, speed, slide)
+        is_flat = low <= 0.0 if is_near else passing <= reach
+    if is_flat and high < math.inf:
+        corner = high
+        passing = cross(height, high, speed, slide)
+        is_flat = high >= 0.0 if is_near else passing >= reach
+    if is_flat:
         return (height - radius) / -speed, 1.0, 0.0
     time, across, along = sweep_point_disc(radius, height, corner, speed, slide)
-    if inward and time == math.inf:
-        # Beyond the end and flying inward the disc cannot miss: rounding did. Nearly parallel to
-        # the face, it passes the corner as good as at its closest, and would sink in behind it.
-        time = -(height * speed + corner * slide) / (speed * speed + slide * slide)
-        return max(time, 0.0), 1.0, 0.0
+    closing = -(height * speed + corner * slide)
+    if time == math.inf and closing > 0.0 and speed < 0.0 and abs(passing) < abs(reach):
+        # It comes abreast of the corner within a radius of it, so that it cannot miss: rounding
+        # did, in a flight nearly parallel to the face, and the disc would sink in behind the
+        # corner. It meets it as good as at its closest, on the flat.
+        return closing / (speed * speed + slide * slide), 1.0, 0.0
     return time, across, along
