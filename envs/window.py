@@ -1,0 +1,143 @@
+"""A window that shows pictures at the right speed, with pygame-ce (the extra `play`)."""
+
+import os
+import time
+import warnings
+from typing import Any
+
+import numpy as np
+from gymnasium.error import DependencyNotInstalled
+from numpy.typing import NDArray
+
+# A new window takes this part of the screen's height at the most; the rest is for its frame, menus
+# and bars.
+SCREEN_PART = 0.9
+# A show that is later than this (seconds), because the program was stopped or busy, goes on from
+# there and does not rush after what it missed.
+PATIENCE = 0.1
+
+
+def _import_pygame() -> Any:
+    """Import pygame-ce, quietly.
+
+    Raises:
+        DependencyNotInstalled: it is missing, or the older pygame lies in its place.
+    """
+    # Its greeting is nothing that a user of this package asked for.
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    try:
+        with warnings.catch_warnings():
+            # Some releases look for their resources in a deprecated way.
+            warnings.simplefilter("ignore")
+            import pygame
+    except ImportError as error:
+        raise DependencyNotInstalled(
+            'a window needs pygame-ce, which is not installed; run `pip install "arkanoid[play]"`'
+        ) from error
+    if not hasattr(pygame, "Window"):
+        raise DependencyNotInstalled(
+            f"a window needs pygame-ce 2.5 or newer, not pygame {pygame.version.ver}; run "
+            '`pip uninstall pygame` and then `pip install --force-reinstall "arkanoid[play]"`'
+        )
+    return pygame
+
+
+class Window:
+    """A window for pictures; it opens with the first one and takes its size.
+
+    The user may resize it (the pictures keep their proportions) and may close it: then the show is
+    over, `show` does nothing any more and returns False, and the program goes on.
+
+    Args:
+        title: of the window.
+        frames_per_second: at most so many pictures are shown a second; `show` waits accordingly.
+
+    Raises:
+        DependencyNotInstalled: pygame-ce is missing.
+        ValueError: frames_per_second is not positive.
+    """
+
+    def __init__(self, title: str, frames_per_second: float) -> None:
+        if not frames_per_second > 0:
+            raise ValueError(f"frames_per_second must be positive; got {frames_per_second!r}")
+        self._pygame = _import_pygame()
+        self._title = title
+        self._period = 1.0 / frames_per_second
+        self._next = 0.0
+        self._window: Any = None
+        self._closed = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether the show is over."""
+        return self._closed
+
+    def show(self, frame: NDArray[np.uint8]) -> bool:
+        """Show a picture, uint8 [height, width, 3], when its time has come.
+
+        Returns:
+            Whether the window is still open.
+        """
+        if self._closed:
+            return False
+        if self._window is None:
+            self._open(frame.shape[1], frame.shape[0])
+        self._wait()
+        self._draw(frame)
+        if self._close_asked():
+            self.close()
+        return not self._closed
+
+    def close(self) -> None:
+        """Close the window; a second call does nothing."""
+        self._closed = True
+        if self._window is not None:
+            self._window.destroy()
+            self._window = None
+
+    def _open(self, width: int, height: int) -> None:
+        """Open the window, as large as a whole multiple of the picture that fits the screen."""
+        pygame = self._pygame
+        pygame.display.init()
+        screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
+        factor = max(1, min(screen_width // width, int(SCREEN_PART * screen_height) // height))
+        size = (width * factor, height * factor)
+        self._window = pygame.Window(self._title, size, resizable=True)
+
+    def _wait(self) -> None:
+        """Wait until the next picture is due."""
+        now = time.perf_counter()
+        if now > self._next + PATIENCE:
+            self._next = now
+        time.sleep(max(0.0, self._next - now))
+        self._next += self._period
+
+    def _draw(self, frame: NDArray[np.uint8]) -> None:
+        """Draw a picture as large as fits, in the middle."""
+        pygame = self._pygame
+        surface = self._window.get_surface()
+        height, width = frame.shape[:2]
+        factor = min(surface.get_width() / width, surface.get_height() / height)
+        size = (max(1, round(width * factor)), max(1, round(height * factor)))
+        picture = pygame.surfarray.make_surface(frame.transpose(1, 0, 2))
+        scale = pygame.transform.scale if factor == int(factor) else pygame.transform.smoothscale
+        surface.fill(0)
+        surface.blit(
+            scale(picture, size),
+            ((surface.get_width() - size[0]) // 2, (surface.get_height() - size[1]) // 2),
+        )
+        self._window.flip()
+
+    def _close_asked(self) -> bool:
+        """Take what the user did; tell whether it was to close this window."""
+        pygame = self._pygame
+        closing = (pygame.WINDOWCLOSE, pygame.QUIT)
+        asked = False
+        for event in pygame.event.get(closing):
+            if event.type == pygame.QUIT or event.window == self._window:
+                asked = True
+            elif event.window is not None:
+                pygame.event.post(event)  # for another window of this program
+        # The rest means nothing here, but the queue must not run full of it.
+        pygame.event.get(exclude=closing)
+        return asked
