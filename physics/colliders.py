@@ -246,7 +246,7 @@ class Convex(Collider):
     @cached_property
     def vertices(self) -> tuple[Vector, ...]:
         """The corners, counterclockwise: as many as edges, or fewer if it is open."""
-        return tuple((edge.end_x, edge.end_y) for edge in self.edges if edge.has_end)
+        return tuple((edge.start_x, edge.start_y) for edge in self.edges if edge.has_start)
 
     @cached_property
     def half_planes(self) -> tuple[HalfPlane, ...]:

@@ -219,7 +219,9 @@ def contact_between(
     """
     if _is_swapped(shapes, edges, a, b, dx, dy):
         found, normal_x, normal_y, depth, x, y = _contact(shapes, edges, b, a, -dx, -dy)
-        return found, -normal_x, -normal_y, depth, x + dx, y + dy
+        if not found:
+            return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return True, -normal_x, -normal_y, depth, x + dx, y + dy
     return _contact(shapes, edges, a, b, dx, dy)
 
 
