@@ -60,8 +60,12 @@ def train(model: PPO, experiment: Experiment, log: Path) -> bool:
     """
     model.set_logger(configure(str(log), ["tensorboard", "csv"]))
     stop = StopRequest()
-    with _on_interrupt(stop.request):
-        model.learn(experiment.training.timesteps, callback=[GameStatistics(), ProgressBar(), stop])
+    try:
+        with _on_interrupt(stop.request):
+            callbacks = [GameStatistics(), ProgressBar(), stop]
+            model.learn(experiment.training.timesteps, callback=callbacks)
+    finally:
+        model.logger.close()
     return not stop.requested
 
 

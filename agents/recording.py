@@ -15,7 +15,10 @@ from .worlds import make_worlds
 def record_clip(experiment: Experiment, policy: Policy, path: Path) -> None:
     """Write a GIF of the first evaluation episode, at most ``evaluation.clip_seconds`` of it."""
     frames, rate = play_frames(experiment, policy)
-    imageio.imwrite(path, frames, duration=1000 / rate, loop=0)
+    # A GIF counts hundredths of a second: rounding the times, not the durations, keeps its pace.
+    times = np.round(np.arange(len(frames) + 1) * 100 / rate)
+    durations = (np.diff(times) * 10).astype(int).tolist()
+    imageio.imwrite(path, frames, duration=durations, loop=0)
 
 
 def play_frames(experiment: Experiment, policy: Policy) -> tuple[NDArray[np.uint8], float]:

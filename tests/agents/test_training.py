@@ -1,0 +1,290 @@
+"""Training and evaluation on the game itself, from the command line down."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from arkanoid.agents import cli, learning
+from arkanoid.agents.adapter import GymnasiumVecEnv
+from arkanoid.agents.baselines import BallFollower
+from arkanoid.agents.comparison import COLUMNS
+from arkanoid.agents.episodes import adapt, play_episodes
+from arkanoid.agents.runs import RunFolder
+from arkanoid.agents.schema import SettingsError
+from arkanoid.agents.settings import Experiment, load_experiment
+from arkanoid.agents.worlds import make_worlds
+from numpy.typing import NDArray
+from PIL import Image
+from stable_baselines3 import PPO
+from stable_baselines3.common.vec_env import DummyVecEnv
+
+TINY = ["--training.timesteps", "1024", "--training.worlds", "8", "--ppo.n_steps", "64"]
+TINY += ["--ppo.batch_size", "256", "--evaluation.episodes", "4", "--evaluation.clip_seconds", "1"]
+
+
+def command(module: str, *arguments: str) -> list[str]:
+    return [sys.executable, "-m", f"arkanoid.agents.{module}", *arguments]
+
+
+def weights(model: PPO) -> list[NDArray[np.float32]]:
+    return [value.numpy().copy() for value in model.policy.state_dict().values()]
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    """The packaged quick experiment with a thirteenth of its budget."""
+    output = tmp_path_factory.mktemp("runs")
+    overrides = ["--training.timesteps", "300_000", "--evaluation.episodes", "40"]
+    overrides += ["--evaluation.clip_seconds", "2", "--output", str(output)]
+    assert cli.main(["train", "quick", *overrides]) == 0
+    (path,) = output.iterdir()
+    return RunFolder(path)
+
+
+def test_a_short_training_beats_random_play_by_far(trained: RunFolder) -> None:
+    results = json.loads(trained.evaluation.read_text())["policies"]
+    assert set(results) == {"agent", "no-op", "random", "ball-follower"}
+    for measure in ("score", "hits"):
+        assert results["agent"][measure]["low"] > 3 * results["random"][measure]["high"]
+
+
+def test_a_run_keeps_what_is_needed_to_look_at_it_and_to_repeat_it(trained: RunFolder) -> None:
+    experiment = trained.experiment()
+    assert experiment.training.timesteps == 300_000
+    assert experiment == replace(
+        load_experiment("quick"),
+        output=experiment.output,
+        training=experiment.training,
+        evaluation=experiment.evaluation,
+    )
+    assert list(trained.log.glob("events.out.tfevents.*"))
+    header = (trained.log / "progress.csv").read_text().splitlines()[0].split(",")
+    assert {"rollout/ep_rew_mean", "rollout/ep_hits_mean", "rollout/ep_score_mean"} <= set(header)
+    with Image.open(trained.picture) as clip:
+        assert getattr(clip, "n_frames", 1) > 10
+
+
+def test_evaluating_the_saved_model_gives_the_same_numbers(
+    trained: RunFolder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    expected = json.loads(trained.evaluation.read_text())
+    for path in (trained.path, trained.model):
+        assert cli.main(["evaluate", str(path), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out) == expected
+    assert cli.main(["evaluate", str(trained.path)]) == 0
+    table = capsys.readouterr().out
+    for heading in COLUMNS.values():
+        assert heading in table
+    score = expected["policies"]["agent"]["score"]["mean"]
+    assert re.search(rf"^agent +{score:.0f} ±", table, re.MULTILINE)
+
+
+def test_overrides_change_how_a_saved_model_is_evaluated(
+    trained: RunFolder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    overrides = ["--evaluation.episodes", "3", "--env.lives", "1"]
+    assert cli.main(["evaluate", str(trained.path), "--json", *overrides]) == 0
+    results = json.loads(capsys.readouterr().out)
+    assert results["episodes"] == 3
+    assert results["env"]["lives"] == 1
+
+
+def test_the_weights_are_those_of_training_on_dummy_vec_env() -> None:
+    """The native batch and single environments, at equal seeds, with ends and cuts of episodes."""
+    experiment = load_experiment("quick", [("env.max_decisions", "90"), ("env.lives", "2")])
+
+    def train(venv: Any) -> list[NDArray[np.float32]]:
+        model = PPO("MlpPolicy", venv, n_steps=64, batch_size=64, n_epochs=2, seed=4, device="cpu")
+        model.learn(2048)
+        return weights(model)
+
+    native = train(GymnasiumVecEnv(make_worlds(experiment, 4)))
+    singles = train(DummyVecEnv([lambda: gym.make("Arkanoid-v0", **experiment.env)] * 4))
+    for ours, theirs in zip(native, singles, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+def test_the_same_seed_gives_the_same_weights_and_another_seed_others() -> None:
+    def train(seed: str) -> list[NDArray[np.float32]]:
+        small = [("training.worlds", "8"), ("ppo.n_steps", "64"), ("ppo.batch_size", "256")]
+        experiment = load_experiment("quick", [("seed", seed), *small])
+        model = learning.make_model(experiment, adapt(make_worlds(experiment, 8)))
+        model.learn(1024)
+        return weights(model)
+
+    first, again, other = train("3"), train("3"), train("4")
+    for ours, theirs in zip(first, again, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+    assert any((ours != theirs).any() for ours, theirs in zip(first, other, strict=True))
+
+
+def test_an_episode_depends_on_its_seed_alone() -> None:
+    """Against single environments, played one after the other by Gymnasium's own rules."""
+    experiment = load_experiment("quick", [("env.lives", "1")])
+    worlds = make_worlds(experiment, 6)
+    follower = BallFollower(worlds.unwrapped.layout)  # type: ignore[attr-defined]
+    played = play_episodes(worlds, follower, seed=70)
+    single = gym.make("Arkanoid-v0", **experiment.env)
+    for index in range(6):
+        observation, _ = single.reset(seed=70 + index)
+        total, steps, hits, over = 0.0, 0, 0, False
+        while not over:
+            action = follower(observation[None])[0]
+            observation, reward, terminated, truncated, info = single.step(action)
+            total, steps, hits = total + float(reward), steps + 1, hits + info["hits"]
+            over = terminated or truncated
+        assert played["return"][index] == total
+        assert played["steps"][index] == steps
+        assert played["hits"][index] == hits
+        for key in ("score", "lives", "round", "bricks_left"):
+            assert played[key][index] == info[key]
+
+
+def test_an_environment_that_refuses_its_arguments_is_a_settings_error() -> None:
+    experiment = replace(Experiment(), env={"livs": 3})
+    with pytest.raises(SettingsError, match=r"Arkanoid-v0 refuses the \[env\] table.*livs.*lives"):
+        make_worlds(experiment, 2)
+
+
+def test_commands_run_as_modules(tmp_path: Path) -> None:
+    """From a TOML file in a folder of the user's to a table; the budget is that of a moment."""
+    config = tmp_path / "mine.toml"
+    config.write_text('name = "mine"\noutput = "here"\n[env]\nactions = "discrete6"\n')
+    trained = subprocess.run(
+        command("train", "mine.toml", *TINY), cwd=tmp_path, capture_output=True, text=True
+    )
+    assert trained.returncode == 0, trained.stderr
+    assert "ball-follower" in trained.stdout
+    (folder,) = (tmp_path / "here").iterdir()
+    assert folder.name.startswith("mine-seed0-")
+    for kept in ("model.zip", "config.toml", "log", "play.gif"):
+        assert (folder / kept).exists()
+    assert str(Path("here") / folder.name / "model.zip") in trained.stdout
+    evaluated = subprocess.run(
+        command("evaluate", str(folder), "--json"), cwd=tmp_path, capture_output=True, text=True
+    )
+    assert evaluated.returncode == 0, evaluated.stderr
+    assert json.loads(evaluated.stdout) == json.loads((folder / "evaluation.json").read_text())
+
+
+def test_ctrl_c_saves_the_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--training.timesteps", "1_000_000_000", "--output", str(tmp_path)]
+    process = subprocess.Popen(
+        command("train", *TINY, *arguments),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60
+    # The first line of the curves is written in the middle of the training.
+    while not any(file.stat().st_size for file in tmp_path.glob("*/log/progress.csv")):
+        assert process.poll() is None, process.communicate()[1]
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    (folder,) = tmp_path.iterdir()
+    assert str(folder / "model.zip") in out
+    assert "Traceback" not in err
+    assert cli.main(["evaluate", str(folder)]) == 0
+    assert "agent" in capsys.readouterr().out
+
+
+def test_training_in_a_thread_leaves_signals_alone(tmp_path: Path) -> None:
+    """Only the main thread may handle Ctrl-C: elsewhere, asking to is an error of Python's."""
+    overrides = list(zip((key[2:] for key in TINY[::2]), TINY[1::2], strict=True))
+    experiment = load_experiment("quick", overrides)
+    model = learning.make_model(experiment, adapt(make_worlds(experiment, 8)))
+    finished: list[bool] = []
+    thread = threading.Thread(
+        target=lambda: finished.append(learning.train(model, experiment, tmp_path))
+    )
+    thread.start()
+    thread.join()
+    assert finished == [True]
+
+
+def test_the_console_script_is_this_command_line() -> None:
+    (script,) = entry_points(group="console_scripts", name="arkanoid")
+    assert script.load() is cli.main
+
+
+def test_help_is_quick_for_nothing_slow_is_imported() -> None:
+    program = (
+        "import sys; from arkanoid.agents.cli import main\n"
+        "try: main(['train', '--help'])\n"
+        "except SystemExit as stop: assert stop.code == 0\n"
+        "assert not {'torch', 'stable_baselines3', 'imageio', 'tqdm'} & set(sys.modules)"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    assert "--ppo.learning_rate" in result.stdout
+
+
+@pytest.mark.parametrize("package", ["torch", "stable_baselines3", "tqdm"])
+def test_without_the_extra_it_says_what_to_install(package: str) -> None:
+    program = (
+        f"import sys; sys.modules[{package!r}] = None; from arkanoid.agents.cli import main; "
+        "sys.exit(main(['train']))"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.returncode == 1
+    assert 'pip install "arkanoid[train]"' in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["train", "no_such.toml"], ["no_such.toml", "quick"]),
+        (["train", "--ppo.gama", "1"], ["command line", "'ppo.gama'", "'ppo.gamma'"]),
+        (["train", "--ppo.gama=1"], ["command line", "'ppo.gama'", "'ppo.gamma'"]),
+        (["train", "--env.lives", "none", *TINY], ["Arkanoid-v0", "lives must be an integer"]),
+        (["evaluate", "no_such_run"], ["no_such_run", "model.zip"]),
+    ],
+)
+def test_a_mistake_gets_one_line_and_exit_status_2(
+    arguments: list[str], words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(arguments) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("arkanoid: error: ")
+    assert message.count("\n") == 1
+    for word in words:
+        assert word in message
+
+
+def test_a_setting_without_a_value_is_a_mistake() -> None:
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["train", "--seed"])
+    assert stop.value.code == 2
+
+
+def test_a_value_may_begin_with_a_minus() -> None:
+    words, overrides = cli.split_overrides(["train", "x", "--seed", "-1", "--a.b=c=d", "--json"])
+    assert words == ["train", "x", "--json"]
+    assert overrides == [("seed", "-1"), ("a.b", "c=d")]
+
+
+def test_runs_of_the_same_second_get_folders_of_their_own(tmp_path: Path) -> None:
+    experiment = replace(Experiment(), output=str(tmp_path / "new" / "runs"))
+    paths = {RunFolder.create(experiment).path for _ in range(3)}
+    assert len(paths) == 3
+
+
+def test_an_output_that_is_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(SettingsError, match="'output' cannot be written to"):
+        RunFolder.create(replace(Experiment(), output=str(tmp_path / "file")))
