@@ -41,7 +41,7 @@ format: $(VENV)/dev  ## Put the sources into format, mend what can be mended
 
 check: lint types test  ## All of lint, types and test
 
-bench: $(VENV)/dev  ## Run the benchmarks
+bench: $(VENV)/bench  ## Run the benchmarks
 	for benchmark in tests/benchmarks/*.py; do $(BIN)/python $$benchmark || exit; done
 
 clean:  ## Remove what was built and installed (not runs/)
@@ -55,6 +55,10 @@ $(VENV)/train: $(REQUIREMENTS) | $(BIN)/python
 $(VENV)/dev: $(REQUIREMENTS) | $(BIN)/python
 	$(INSTALL) '.[dev]'
 	touch $@ $(VENV)/train
+
+$(VENV)/bench: $(REQUIREMENTS) | $(BIN)/python
+	$(INSTALL) '.[bench]'
+	touch $@
 
 $(BIN)/python:
 	@test -n '$(PYTHON)' || { echo 'arkanoid needs Python 3.11 or newer, and none was found.' \

@@ -170,7 +170,7 @@ def test_every_subpackage_is_listed() -> None:
 
 def test_extras_for_developing_hold_those_for_users() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
-    assert set(extras) == {"train", "play", "dev"}
+    assert set(extras) == {"train", "play", "bench", "dev"}
     assert "arkanoid[train,play]" in extras["dev"]
 
 
