@@ -1,0 +1,80 @@
+"""The break at pool, with `World`: sixteen balls, four cushions, and six pockets that only notice.
+
+Lengths are in metres, times in seconds. There is no friction: what slows the balls is that bounces
+are not perfect.
+"""
+
+import math
+
+from arkanoid.physics import BEGIN, AxisAlignedHalfPlane, Body, Particle, World
+
+WIDTH, HEIGHT = 2.54, 1.27
+RADIUS = 0.0286
+MASS = 0.17  # kg
+POCKETS = [(x, y) for x in (0, WIDTH / 2, WIDTH) for y in (0, HEIGHT)]
+FRAME = 1 / 60
+
+
+def rack() -> list[tuple[float, float]]:
+    """Return where the fifteen balls are: a triangle with its tip to the left, a hair apart."""
+    step = 2 * RADIUS * 1.001
+    return [
+        (0.72 * WIDTH + row * step * math.sqrt(3) / 2, HEIGHT / 2 + step * (place - row / 2))
+        for row in range(5)
+        for place in range(row + 1)
+    ]
+
+
+def table() -> tuple[World, list[str]]:
+    """Return the world, and the name of every body in it."""
+    world = World()
+    names = []
+    for direction, place in (
+        ("+x", (0, 0)),
+        ("-x", (WIDTH, 0)),
+        ("+y", (0, 0)),
+        ("-y", (0, HEIGHT)),
+    ):
+        world.add(Body(AxisAlignedHalfPlane(direction), place, restitution=0.8))
+        names.append(f"cushion {direction}")
+    for number, place in enumerate(POCKETS, 1):
+        world.add(Body(Particle(0.04), place), sensor=True)
+        names.append(f"pocket {number}")
+    for number, place in enumerate(rack(), 1):
+        world.add(ball(place))
+        names.append(f"ball {number}")
+    world.add(ball((0.25 * WIDTH, 0.5 * HEIGHT), velocity=(9.0, 0.0)))
+    names.append("cue ball")
+    return world, names
+
+
+def ball(place: tuple[float, float], velocity: tuple[float, float] = (0.0, 0.0)) -> Body:
+    """Return a ball somewhere."""
+    return Body(Particle(RADIUS), place, velocity, MASS, restitution=0.97)
+
+
+def energy(world: World) -> float:
+    """Return the energy of all that moves, in joules."""
+    return 0.5 * MASS * float((world.velocities**2).sum())
+
+
+def main() -> None:
+    """Break, and watch for ten seconds."""
+    world, names = table()
+    print(f"{energy(world):.2f} J before the break")
+    bounces = 0
+    for _ in range(600):
+        hits = world.step(FRAME)
+        potted = hits[hits["kind"] == BEGIN]
+        bounces += len(hits) - len(potted)
+        for hit in potted:
+            print(f"{hit['time']:.3f} s: {names[hit['b']]} in {names[hit['a']]}")
+        # From the last index on, for those behind one that is removed move down.
+        for index in sorted(set(potted["b"].tolist()), reverse=True):
+            world.remove(index)
+            del names[index]
+    print(f"{bounces} bounces; {energy(world):.2f} J and {len(world) - 10} balls are left")
+
+
+if __name__ == "__main__":
+    main()
