@@ -2,7 +2,8 @@
 
 Colliders are shapes, bodies (or any objects that have a collider and a position) are shapes
 somewhere. `detect`, `contact`, `relax`, `bounce`, `resolve`, `collide` and `time_of_impact` answer
-and act on a pair of them.
+and act on a pair of them. A `World` steps many of them from impact to impact, a `WorldBatch` many
+worlds.
 """
 
 from .body import Body
@@ -15,7 +16,7 @@ from .colliders import (
     Particle,
     Rectangle,
 )
-from .errors import InseparableError
+from .errors import HitLimitWarning, InseparableError
 from .operations import (
     Contact,
     Impact,
@@ -28,8 +29,14 @@ from .operations import (
     time_of_impact,
 )
 from .protocols import Collidable, Dynamic, Moving
+from .world import RayHit, World
+from .world_batch import WorldBatch
+from .world_records import BEGIN, END, HIT, Hit
 
 __all__ = [
+    "BEGIN",
+    "END",
+    "HIT",
     "AxisAlignedHalfPlane",
     "AxisAlignedRectangle",
     "Body",
@@ -39,11 +46,16 @@ __all__ = [
     "Convex",
     "Dynamic",
     "HalfPlane",
+    "Hit",
+    "HitLimitWarning",
     "Impact",
     "InseparableError",
     "Moving",
     "Particle",
+    "RayHit",
     "Rectangle",
+    "World",
+    "WorldBatch",
     "bounce",
     "collide",
     "contact",

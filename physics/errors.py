@@ -18,3 +18,7 @@ class InseparableError(ValueError):
     def __reduce__(self) -> tuple[type["InseparableError"], tuple[object, object]]:
         """Let the error be pickled, across processes for instance."""
         return type(self), (self.a, self.b)
+
+
+class HitLimitWarning(RuntimeWarning):
+    """A body met so much in one step of a world that it stayed where it was for the rest of it."""

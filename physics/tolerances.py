@@ -15,3 +15,15 @@ REST = 1e-290
 # A fraction of the polygon's size (or of the farthest half-plane's distance from the origin). An
 # edge shorter than this is a corner: rounding alone can make or unmake it.
 NO_LENGTH = 1e-12
+
+# A fraction of a place's coordinates (plus the overlap itself). What flew to where it touches may
+# overlap by a few of the last digits, 1e-16; what overlaps by more was put there, and is relaxed.
+NO_DEPTH = 1e-12
+
+# A fraction of the bodies' speeds. What approaches more slowly than that only seems to, by the
+# rounding of the bounce before, and has been stopped already.
+NO_APPROACH = 1e-15
+
+# Rounds of relaxation at the beginning of a step. A pile in which each body pushes the next one
+# settles by a constant factor a round; this is for what has room, and ends where there is none.
+RELAX_ROUNDS = 64

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from numbers import Real
+from operator import index
 from typing import Any
 
 Vector = tuple[float, float]
@@ -14,6 +15,16 @@ def _number(name: str, value: Any) -> float:
     if not isinstance(value, float) and (not isinstance(value, Real) or isinstance(value, bool)):
         raise TypeError(f"{name} must be a number, but is {value!r}")
     return float(value)
+
+
+def whole(name: str, value: Any, at_least: int) -> int:
+    """Return an integer that is not below a bound."""
+    if isinstance(value, bool):
+        raise TypeError(f"{name} must be an integer, but is {value!r}")
+    number = index(value)
+    if number < at_least:
+        raise ValueError(f"{name} must be at least {at_least}, but is {value!r}")
+    return number
 
 
 def finite(name: str, value: Any) -> float:
