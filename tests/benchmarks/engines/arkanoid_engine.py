@@ -1,0 +1,76 @@
+"""This project's engine."""
+
+import numpy as np
+from arkanoid.physics import (
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Body,
+    Particle,
+    World,
+    WorldBatch,
+)
+
+from .scene import FloatArray, Scene
+
+
+def build(scene: Scene) -> World:
+    """Return the scene's world: the discs, then the boxes, then the walls."""
+    bodies = [
+        Body(Particle(scene.radius), position, velocity, mass=1.0)
+        for position, velocity in zip(scene.positions, scene.velocities, strict=True)
+    ]
+    bodies += [
+        Body(AxisAlignedRectangle(width, height), (x, y)) for x, y, width, height in scene.boxes
+    ]
+    if scene.room is not None:
+        bodies += [Body(AxisAlignedHalfPlane(direction)) for direction in ("+x", "+y")]
+        bodies += [Body(AxisAlignedHalfPlane(direction), scene.room) for direction in ("-x", "-y")]
+    world = World(bodies)
+    world.step(0.0)  # makes the grid and all that, as the peers do while bodies are added
+    return world
+
+
+class Arkanoid:
+    """One world. There is one setting only, and hits are always returned.
+
+    Subclasses call it differently; ``steps_per_call`` is 1 like the peers'.
+    """
+
+    steps_per_call = 1
+
+    def __init__(self, scene: Scene, *, accurate: bool = False, count: bool = False) -> None:
+        self.world = build(scene)
+        self.discs = len(scene.positions)
+
+    def run(self, steps: int) -> int:
+        step, hits = self.world.step, 0
+        for _ in range(steps // self.steps_per_call):
+            hits += len(step(1.0, self.steps_per_call))
+        return hits
+
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        return self.world.positions[: self.discs], self.world.velocities[: self.discs]
+
+
+class ManySteps(Arkanoid):
+    """One world, a thousand steps a call."""
+
+    steps_per_call = 1000
+
+
+class Batch:
+    """Worlds stepped together: copies of the scene's, but for the headings of their discs."""
+
+    def __init__(self, scene: Scene, velocities: FloatArray) -> None:
+        """Velocities: float64 [worlds, 2], of the only disc of each."""
+        self.batch = WorldBatch(build(scene), len(velocities))
+        self.batch.velocities[:, 0] = velocities
+
+    def run(self, steps: int) -> int:
+        step, hits = self.batch.step, 0
+        for _ in range(steps):
+            hits += len(step(1.0))
+        return hits
+
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        return np.array(self.batch.positions[:, 0]), np.array(self.batch.velocities[:, 0])
