@@ -73,8 +73,8 @@ def contact_place(
     x, y = touching_point(
         shapes_of(world),
         edges_of(world),
-        traits_of(world)[a].shape,
-        traits_of(world)[b].shape,
+        traits_of(world)[a].collider,
+        traits_of(world)[b].collider,
         bx - ax,
         by - ay,
         normal_x,
@@ -127,18 +127,18 @@ def leave_sensor(
     x, y, vx, vy = place(world, sensor, now, now_low)
     body_x, body_y, body_vx, body_vy = place(world, body, now, now_low)
     dx, dy, vx, vy = body_x - x, body_y - y, body_vx - vx, body_vy - vy
-    if overlap_between(shapes_of(world), edges_of(world), here.shape, there.shape, dx, dy):
+    if overlap_between(shapes_of(world), edges_of(world), here.collider, there.collider, dx, dy):
         return count
     if not header_of(world).continuous:
         vx = vy = 0.0
     ahead, _, _ = impact_between(
-        shapes_of(world), edges_of(world), here.shape, there.shape, dx, dy, vx, vy, math.inf
+        shapes_of(world), edges_of(world), here.collider, there.collider, dx, dy, vx, vy, math.inf
     )
     if ahead < math.inf:
         # It touches and is about to enter: it has just been noticed.
         return count
     back, normal_x, normal_y = impact_between(
-        shapes_of(world), edges_of(world), here.shape, there.shape, dx, dy, -vx, -vy, math.inf
+        shapes_of(world), edges_of(world), here.collider, there.collider, dx, dy, -vx, -vy, math.inf
     )
     if back == math.inf:
         back = 0.0

@@ -31,7 +31,7 @@ def solid_contact(world: Any, a: int, b: int) -> tuple[bool, float, float, float
     ax, ay, _, _ = place(world, a, clock.time, clock.time_low)
     bx, by, _, _ = place(world, b, clock.time, clock.time_low)
     found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes_of(world), edges_of(world), one.shape, other.shape, bx - ax, by - ay
+        shapes_of(world), edges_of(world), one.collider, other.collider, bx - ax, by - ay
     )
     return found, normal_x, normal_y, depth, ax + x, ay + y
 

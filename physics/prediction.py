@@ -11,7 +11,7 @@ from .clock_time import elapsed, later
 from .compilation import kernel
 from .dispatch import impact_between, may_touch
 from .grid import find_near, time_to_cross
-from .tolerances import NO_APPROACH
+from .tolerances import NO_APPROACH, SAME_PLACE
 from .tournament import replay
 from .world_memory import (
     edges_of,
@@ -70,6 +70,16 @@ def _approaches(vx: float, vy: float, normal_x: float, normal_y: float, speed: f
 
 
 @kernel
+def skewness(shape: Any, edges: Any, x: float, y: float) -> float:
+    """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
+    least = 1.0
+    for index in range(shape.first, shape.first + shape.count):
+        edge = edges[index]
+        least = min(least, abs(edge.normal_x * y - edge.normal_y * x))
+    return least
+
+
+@kernel
 def predict(world: Any, slot: int, now: float, now_low: float, only_later: bool) -> None:
     """Make a body's plan anew: the first event that comes, from now on.
 
@@ -103,12 +113,16 @@ def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: b
         trait = traits[other]
         their_x, their_y, their_vx, their_vy = place(world, other, now, now_low)
         dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
-        if not may_touch(shapes, own.shape, trait.shape, dx, dy, ux, uy, best):
+        slack = 0.0
+        if trait.slot < 0 and ux * ux + uy * uy > 0.0:
+            places = abs(x) + abs(y) + abs(dx) + abs(dy)
+            slack = SAME_PLACE * places / math.sqrt(ux * ux + uy * uy)
+        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
             continue
         if rests(world, trait.slot) or is_inside(world, own, body, trait, other):
             continue
         time, normal_x, normal_y = impact_between(
-            shapes, edges, own.shape, trait.shape, dx, dy, ux, uy, best
+            shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, best + slack
         )
         if time == math.inf:
             continue
@@ -117,8 +131,18 @@ def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: b
             speed = abs(vx) + abs(vy) + abs(their_vx) + abs(their_vy)
             if not _approaches(ux, uy, normal_x, normal_y, speed):
                 continue
-        # Of events at the same time the order of the bodies decides, not that of the grid.
-        if time < best or plan.kind != MEET or other < plan.partner:
+        if plan.kind == MEET and abs(time - best) <= slack:
+            # Both at once, as far as numbers can tell. Where the disc comes down on the seam of two
+            # boxes, a face is met and not the other box's corner.
+            rank = skewness(shapes[trait.collider], edges, normal_x, normal_y)
+            partner = shapes[traits[plan.partner].collider]
+            best_rank = skewness(partner, edges, plan.normal_x, plan.normal_y)
+            is_first = rank < best_rank or (rank == best_rank and other < plan.partner)
+        else:
+            # What meets comes before what crosses; of two that meet, the order of the bodies
+            # decides, not that of the grid.
+            is_first = time < best or plan.kind != MEET or other < plan.partner
+        if is_first:
             best = time
             plan.kind = MEET
             plan.partner = other

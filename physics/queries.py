@@ -5,8 +5,16 @@ from typing import Any
 
 from .compilation import kernel
 from .dispatch import impact_between, may_touch, overlap_between
-from .prediction import place
-from .world_memory import open_world, traits_of
+from .world_memory import motions_of, open_world, traits_of
+
+
+@kernel
+def _position(world: Any, trait: Any) -> tuple[float, float]:
+    """Return where a body is between two steps."""
+    if trait.slot < 0:
+        return trait.home_x, trait.home_y
+    motion = motions_of(world)[trait.slot]
+    return motion.x, motion.y
 
 
 @kernel
@@ -35,11 +43,11 @@ def find_overlapping(
         trait = traits_of(world)[body]
         if (trait.category & mask) == 0:
             continue
-        dx, dy, _, _ = place(world, body, 0.0, 0.0)
+        dx, dy = _position(world, trait)
         dx, dy = dx - x, dy - y
-        if not may_touch(shapes, own, trait.shape, dx, dy, 0.0, 0.0, 0.0):
+        if not may_touch(shapes, own, trait.collider, dx, dy, 0.0, 0.0, 0.0):
             continue
-        if overlap_between(shapes, edges, own, trait.shape, dx, dy):
+        if overlap_between(shapes, edges, own, trait.collider, dx, dy):
             found[count] = body
             count += 1
     return count
@@ -69,13 +77,13 @@ def find_first(
         trait = traits_of(world)[body]
         if (trait.category & mask) == 0:
             continue
-        dx, dy, _, _ = place(world, body, 0.0, 0.0)
+        dx, dy = _position(world, trait)
         dx, dy = dx - x, dy - y
         reach = min(best, 1.0)
-        if not may_touch(shapes, own, trait.shape, dx, dy, -way_x, -way_y, reach):
+        if not may_touch(shapes, own, trait.collider, dx, dy, -way_x, -way_y, reach):
             continue
         time, out_x, out_y = impact_between(
-            shapes, edges, own, trait.shape, dx, dy, -way_x, -way_y, reach
+            shapes, edges, own, trait.collider, dx, dy, -way_x, -way_y, reach
         )
         if time < best:
             first, best, normal_x, normal_y = body, time, out_x, out_y

@@ -335,7 +335,7 @@ def _meet_here(world: Any, hits: Any, count: int, number: int, a: int, b: int) -
     ax, ay, _, _ = place(world, a, now, now_low)
     bx, by, _, _ = place(world, b, now, now_low)
     found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes_of(world), edges_of(world), one.shape, other.shape, bx - ax, by - ay
+        shapes_of(world), edges_of(world), one.collider, other.collider, bx - ax, by - ay
     )
     if not found:
         return count

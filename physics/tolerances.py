@@ -1,6 +1,7 @@
 """Every tolerance of the engine, with its unit and its reason.
 
-Detection, contacts and times of impact use none: they compare floating-point numbers as they are.
+Whether two discs, boxes or a disc and a face overlap, and when they meet, is decided by comparing
+floating-point numbers as they are.
 """
 
 # Radians. Two directions closer than this count as parallel. Turning a polygon leaves errors of
@@ -27,3 +28,7 @@ NO_APPROACH = 1e-15
 # Rounds of relaxation at the beginning of a step. A pile in which each body pushes the next one
 # settles by a constant factor a round; this is for what has room, and ends where there is none.
 RELAX_ROUNDS = 64
+
+# A fraction of the coordinates of where two bodies meet. Places closer than that are one: so close,
+# which of two static bodies is met first is a matter of rounding.
+SAME_PLACE = 1e-15

@@ -52,7 +52,7 @@ Motion = _record(
 
 Trait = _record(
     [
-        ("shape", np.int64),  # index in the shape table
+        ("collider", np.int64),  # index in the shape table
         ("slot", np.int64),  # of its motion and plan; -1 for a static body
         ("home_x", np.float64),  # where a static body is
         ("home_y", np.float64),

@@ -100,7 +100,7 @@ def build_setup(
     shapes, edges = shape_table(index)
     traits = np.zeros(len(items), Trait)
     for trait, item in zip(traits, items, strict=True):
-        trait.shape = index[item.collider]
+        trait.collider = index[item.collider]
         trait.inverse_mass = item.inverse_mass
         trait.restitution = item.restitution
         trait.category = item.category
@@ -113,7 +113,7 @@ def build_setup(
     traits["slot"][moving] = np.arange(len(moving))
     traits["sensor"][sensing] = np.arange(len(sensing))
 
-    own = shapes[traits["shape"]]
+    own = shapes[traits["collider"]]
     boxes = np.column_stack([own[name] for name in ("lower_x", "lower_y", "upper_x", "upper_y")])
     reach = np.abs(boxes).max(axis=1, initial=0.0)
     traits["roams"] = moves & _is_large(reach, moves)
@@ -150,14 +150,14 @@ def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
     """Return two bodies that would have to bounce and no finite translation separates, or None."""
     traits, shapes = setup.traits, setup.shapes
     reach = np.array([max(-s.lower_x, -s.lower_y, s.upper_x, s.upper_y) for s in shapes])
-    open_ones = np.flatnonzero(np.isinf(reach[traits["shape"]]) & (traits["sensor"] < 0))
+    open_ones = np.flatnonzero(np.isinf(reach[traits["collider"]]) & (traits["sensor"] < 0))
     for a in open_ones[traits["slot"][open_ones] >= 0]:
         for b in open_ones:
             one, other = traits[a], traits[b]
             meets = one.category & other.mask and other.category & one.mask
             if a == b or not meets or one.inverse_mass + other.inverse_mass == 0.0:
                 continue
-            depth = contact_between(shapes, setup.edges, one.shape, other.shape, 0.0, 0.0)[3]
+            depth = contact_between(shapes, setup.edges, one.collider, other.collider, 0.0, 0.0)[3]
             if depth == math.inf:
                 return int(a), int(b)
     return None
