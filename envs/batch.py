@@ -106,7 +106,8 @@ def step_worlds(
             reward = outcome.reward
             terminated, truncated = outcome.terminated, outcome.truncated
             finals[index] = outcome
-            final_observations[index, :] = observations[index, :]
+            for place in range(observations.shape[1]):
+                final_observations[index, place] = observations[index, place]
             _reset_world(worlds, rules, levels, outcomes, observations, index)
             outcome.reward = reward
             outcome.terminated = terminated

@@ -14,7 +14,7 @@ from numba.core import types
 from numba.core.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
-from .compilation import kernel
+from .compilation import accessor
 
 
 def _numpy_view(memory: Any, start: int, count: int, dtype: Any) -> Any:
@@ -49,7 +49,7 @@ def _borrowed_view(typing_context: Any, memory: Any, start: Any, count: Any, dty
 _view: Any = _numpy_view if numba.config.DISABLE_JIT else _borrowed_view
 
 
-@kernel
+@accessor
 def borrowed(memory: Any, start: int, count: int, dtype: Any) -> Any:
     """Return ``count`` items of a dtype that begin at byte ``start`` of a block, uint8 [bytes]."""
     return _view(memory, start, count, dtype)

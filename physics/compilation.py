@@ -55,10 +55,21 @@ def kernel(function: F) -> F:
 
     IEEE arithmetic throughout (no ``fastmath``), NumPy's error model (a division by zero gives inf
     or nan, not an exception), and the GIL is released, so that threads run kernels in parallel.
+    Numba's run time is left out, for it would count the references of every array that is passed
+    on; so what allocates memory, or returns an array, does not compile.
     """
+    return _compiled(function, _nrt=False)
+
+
+def accessor(function: F) -> F:
+    """Compile a kernel that may return an array: a view into what it was given."""
+    return _compiled(function, _nrt=True)
+
+
+def _compiled(function: F, **options: bool) -> F:
     if numba.config.DISABLE_JIT:
         return function
-    compiled: F = numba.njit(function, nogil=True, error_model="numpy")
+    compiled: F = numba.njit(function, nogil=True, error_model="numpy", **options)
     folder = cache_folder(Path(function.__code__.co_filename))
     if folder is not None and _prepared(folder):
         _cache_in(folder, compiled)

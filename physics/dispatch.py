@@ -6,6 +6,7 @@ lie, so that swapping it turns the normal round bit for bit. (Two identical shap
 place cannot be told apart: their normal is the same whichever comes first.)
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -249,10 +250,16 @@ def impact_between(
     if they touch and separate, or slide past each other. If they overlap already, it is 0 and the
     normal is the contact's. The unit normal points from a to b.
     """
-    if _is_swapped(shapes, edges, a, b, dx, dy):
-        time, normal_x, normal_y = _impact(shapes, edges, b, a, -dx, -dy, -vx, -vy, duration)
+    is_swapped = _is_swapped(shapes, edges, a, b, dx, dy)
+    if is_swapped:
+        a, b, dx, dy, vx, vy = b, a, -dx, -dy, -vx, -vy
+    time, normal_x, normal_y = _impact(shapes, edges, a, b, dx, dy, vx, vy, duration)
+    # So far ahead that no number is large enough for it, at a speed of 1e-320 for instance.
+    if not time < math.inf:
+        return math.inf, 0.0, 0.0
+    if is_swapped:
         return time, -normal_x, -normal_y
-    return _impact(shapes, edges, a, b, dx, dy, vx, vy, duration)
+    return time, normal_x, normal_y
 
 
 @kernel

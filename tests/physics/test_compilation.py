@@ -13,9 +13,13 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import arkanoid
+import numpy as np
 import pytest
+from arkanoid.physics import compilation
+from numba.core.errors import NumbaError
 
 FILES = {
     "arkanoid/__init__.py": "",
@@ -339,3 +343,19 @@ def test_use_keeps_a_folder_from_being_pruned(scratch: Scratch) -> None:
         os.utime(folder, (long_ago, long_ago))
     assert scratch.run().compiled == []
     assert all(time.time() - folder.stat().st_mtime < 86_400 for folder in scratch.folders())
+
+
+def test_a_kernel_that_allocates_does_not_compile() -> None:
+    """Nor does one that returns an array; an accessor may. So a step costs no reference counts."""
+
+    def allocates(size: int) -> float:
+        return float(np.zeros(size)[0])
+
+    def passes(values: Any) -> Any:
+        return values
+
+    with pytest.raises(NumbaError, match="NRT required"):
+        compilation.kernel(allocates)(3)
+    with pytest.raises(NumbaError, match="NRT required"):
+        compilation.kernel(passes)(np.arange(2.0))
+    assert compilation.accessor(passes)(np.arange(2.0)).tolist() == [0, 1]

@@ -26,7 +26,7 @@ from arkanoid.physics.dispatch import (
 )
 from arkanoid.physics.records import KINDS
 from arkanoid.physics.shape_table import shape_table
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 SAMPLES: tuple[Collider, ...] = (
@@ -82,9 +82,11 @@ def test_swapping_a_contact_turns_its_normal_round(
 
 @settings(max_examples=1500, deadline=None)
 @given(pairs, *[coordinate] * 4, st.sampled_from([0.0, 1.0, 1e9, math.inf]))
+@example((Particle(0.5), AxisAlignedRectangle(2, 1)), -2.0, 0.0, 5e-324, 0.0, math.inf)
 def test_swapping_an_impact_turns_its_normal_round(
     pair: tuple[Collider, Collider], dx: float, dy: float, vx: float, vy: float, duration: float
 ) -> None:
+    """In the example the time is beyond all numbers: it was inf, but the normal was there."""
     shapes, edges = table(*pair)
     time, nx, ny = impact_between(shapes, edges, 0, 1, dx, dy, vx, vy, duration)
     back = impact_between(shapes, edges, 1, 0, -dx, -dy, -vx, -vy, duration)
