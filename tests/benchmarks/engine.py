@@ -77,7 +77,8 @@ class Table:
             else ""
             for name, engine in self.columns.items()
         )
-        print(f"  {label:{LABEL - 2}}{''.join(f'{cell:>{COLUMN}}' for cell in cells)}", flush=True)
+        line = f"  {label:{LABEL - 2}}{''.join(f'{cell:>{COLUMN}}' for cell in cells)}"
+        print(line.rstrip(), flush=True)
 
     def ratios(self, values: dict[str, float], ours: float, target: float | None = None) -> None:
         """Print how many times the rate of each peer ours is, and whether pymunk's is enough."""
