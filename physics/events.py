@@ -3,15 +3,20 @@
 import math
 from typing import Any
 
-from .clock_time import later
+from .clock_time import is_earlier, later
 from .compilation import kernel
 from .dispatch import impact_between, overlap_between
 from .prediction import place
+from .tolerances import NO_DEPTH
 from .touching_point import touching_point
 from .world_memory import (
+    clock_of,
     edges_of,
     header_of,
     inside_of,
+    left_as_of,
+    motions_of,
+    moving_of,
     progress_of,
     sensing_of,
     shapes_of,
@@ -107,6 +112,22 @@ def enter_sensor(
 
 
 @kernel
+def forget_moved(world: Any) -> None:
+    """Let what was put elsewhere between two steps be in no sensor yet, and hold nothing."""
+    bodies = traits_of(world).shape[0]
+    motions, left_as, inside = motions_of(world), left_as_of(world), inside_of(world)
+    for slot in range(motions.shape[0]):
+        if motions[slot].x == left_as[slot].x and motions[slot].y == left_as[slot].y:
+            continue
+        moved = moving_of(world)[slot]
+        own = traits_of(world)[moved].sensor
+        for row in range(sensing_of(world).shape[0]):
+            inside[row * bodies + moved] = 0
+            if row == own:
+                inside[row * bodies : (row + 1) * bodies] = 0
+
+
+@kernel
 def leave_sensor(
     world: Any,
     hits: Any,
@@ -119,8 +140,8 @@ def leave_sensor(
 ) -> int:
     """Note that a body has left a sensor, if it has; return how many events there are.
 
-    It flew straight since it entered, and so did the sensor: it left when it would have entered if
-    all flew backwards from here.
+    It has flown straight, and so has the sensor: it left when it would have entered if all flew
+    backwards from here. (Or it was moved out by relaxation, as the step began.)
     """
     here = traits_of(world)[sensor]
     there = traits_of(world)[body]
@@ -134,7 +155,8 @@ def leave_sensor(
     ahead, _, _ = impact_between(
         shapes_of(world), edges_of(world), here.collider, there.collider, dx, dy, vx, vy, math.inf
     )
-    if ahead < math.inf:
+    rounding = NO_DEPTH * (abs(x) + abs(y) + abs(body_x) + abs(body_y))
+    if ahead < math.inf and ahead * (abs(vx) + abs(vy)) <= rounding:
         # It touches and is about to enter: it has just been noticed.
         return count
     back, normal_x, normal_y = impact_between(
@@ -144,6 +166,9 @@ def leave_sensor(
         back = 0.0
     inside_of(world)[here.sensor * traits_of(world).shape[0] + body] = 0
     left, left_low = later(now, now_low, -back)
+    begin, begin_low = clock_of(world).time, clock_of(world).time_low
+    if is_earlier(left, left_low, begin, begin_low):
+        left, left_low = begin, begin_low
     x, y = contact_place(world, sensor, body, left, left_low, normal_x, normal_y)
     return write_event(
         world, hits, count, number, END, left, sensor, body, normal_x, normal_y, x, y, 0.0

@@ -15,6 +15,7 @@ from .world_memory import (
     moving_of,
     near_of,
     plans_of,
+    progress_of,
     shapes_of,
     traits_of,
 )
@@ -57,8 +58,8 @@ def relax_overlaps(world: Any) -> bool:
     """Move apart, pair by pair, what overlaps; return whether anything moved.
 
     Moving one pair apart may push it into others: so it goes round until nothing overlaps, or, if
-    there is not enough room for all, for a number of rounds. What is left is pushed on in later
-    steps.
+    there is not enough room for all, for a number of rounds. What is left is noted as crowded, and
+    pushed on in the next step.
     """
     has_moved = False
     for _ in range(RELAX_ROUNDS):
@@ -72,7 +73,8 @@ def relax_overlaps(world: Any) -> bool:
                     move_apart(world, body, other, normal_x, normal_y, depth)
                     is_done = False
         if is_done:
-            break
+            return has_moved
         has_moved = True
         enter_all(world)
+    progress_of(world).crowded = 1
     return has_moved

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .stepping import INVALID, step_worlds
-from .validation import whole
+from .validation import not_negative, whole
 from .world_records import END, Hit
 from .world_setup import Bytes, Setup
 
@@ -33,7 +33,7 @@ class Stepper:
         """Make steps; return their hits, by world and time.
 
         Raises:
-            ValueError: if a position or velocity is not finite; nothing was stepped then.
+            ValueError: if a position or velocity is not finite, or has become so.
         """
         count = step_worlds(self._states, self.desk, self._buffer, 0, dt, steps)
         while count < 0:
@@ -63,7 +63,4 @@ def checked_step(dt: Any, steps: Any) -> tuple[float, int]:
     """Return a step's length and the number of steps, having checked them."""
     if type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps > 0:
         return dt, steps
-    length = float(dt)
-    if not 0.0 <= length < math.inf:
-        raise ValueError(f"dt must be 0 or more, and finite, but is {dt!r}")
-    return length, whole("steps", steps, at_least=1)
+    return not_negative("dt", dt), whole("steps", steps, at_least=1)

@@ -10,6 +10,7 @@ from .dispatch import contact_between
 from .events import (
     contact_place,
     enter_sensor,
+    forget_moved,
     has_room,
     leave_sensor,
     leave_sensors,
@@ -53,7 +54,7 @@ def step_worlds(states: Any, desk: Any, buffer: Any, count: int, dt: float, step
 
     If the buffer is full it has stopped before the end, and returns -1 - count: call it again with
     a larger buffer that holds the same hits, and it goes on from there. It returns `INVALID` if it
-    came to a world in which a position or velocity is not finite.
+    came to a world in which a position or velocity is not finite, or has become so.
 
     Args:
         states: uint8 [worlds, bytes]; desk: uint8 [bytes], see `world_records`.
@@ -82,6 +83,10 @@ def step_worlds(states: Any, desk: Any, buffer: Any, count: int, dt: float, step
                 return -1 - count
             progress.running = 0
             progress.step += 1
+            if count == INVALID:
+                progress.step = 0
+                progress.world = 0
+                return INVALID
         progress.step = 0
         progress.world = 0
     return count
@@ -93,10 +98,13 @@ def begin_step(world: Any, dt: float) -> bool:
     clock = clock_of(world)
     progress = progress_of(world)
     progress.end, progress.end_low = later(clock.time, clock.time_low, dt)
+    progress.crowded = 0
     if clock.planned and _are_as_left(motions_of(world), left_as_of(world)):
         return True
     if not _are_finite(motions_of(world)):
         return False
+    if header_of(world).sensors > 0:
+        forget_moved(world)
     clock.planned = 0
     plans = plans_of(world)
     for slot in range(plans.shape[0]):
@@ -205,8 +213,11 @@ def _meet(world: Any, hits: Any, count: int, number: int, slot: int) -> int:
     b = plan.partner
     now, now_low = plan.time, plan.time_low
     normal_x, normal_y = plan.normal_x, plan.normal_y
-    if traits_of(world)[a].sensor >= 0 or traits_of(world)[b].sensor >= 0:
-        count = enter_sensor(world, hits, count, number, a, b, now, now_low, normal_x, normal_y)
+    one, other = traits_of(world)[a], traits_of(world)[b]
+    if one.sensor >= 0 or other.sensor >= 0:
+        # If both move, both may have planned it: the second one finds it done.
+        if not is_inside(world, one, a, other, b):
+            count = enter_sensor(world, hits, count, number, a, b, now, now_low, normal_x, normal_y)
         predict(world, slot, now, now_low, False)
         return count
     count = leave_sensors(world, hits, count, number, a, now, now_low)
@@ -352,7 +363,10 @@ def _meet_here(world: Any, hits: Any, count: int, number: int, a: int, b: int) -
 
 @kernel
 def finish_step(world: Any, hits: Any, count: int, number: int) -> int:
-    """Let every body be where it is at the end; return how many hits there are."""
+    """Let every body be where it is at the end; return how many hits there are.
+
+    It returns `INVALID` if a body has outgrown the numbers.
+    """
     header, clock, progress = header_of(world), clock_of(world), progress_of(world)
     if header.sensors > 0:
         count = _leave_all_sensors(world, hits, count, number)
@@ -360,7 +374,7 @@ def finish_step(world: Any, hits: Any, count: int, number: int) -> int:
         return count
     end, end_low = progress.end, progress.end_low
     clock.time, clock.time_low = end, end_low
-    clock.planned = header.continuous
+    clock.planned = header.continuous and not progress.crowded
     motions, left_as, plans = motions_of(world), left_as_of(world), plans_of(world)
     for slot in range(header.movers):
         motion, left, plan = motions[slot], left_as[slot], plans[slot]
@@ -374,6 +388,9 @@ def finish_step(world: Any, hits: Any, count: int, number: int) -> int:
             clock.planned = 0
         plan.hits = 0
         left.x, left.y, left.vx, left.vy = motion.x, motion.y, motion.vx, motion.vy
+    if not _are_finite(motions):
+        clock.planned = 0
+        return INVALID
     return count
 
 

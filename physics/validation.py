@@ -17,11 +17,16 @@ def _number(name: str, value: Any) -> float:
     return float(value)
 
 
+def integer(name: str, value: Any) -> int:
+    """Return an integer; TypeError for what is none, a bool and 1.0 among them."""
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} must be an integer, but is {value!r}")
+    return index(value)
+
+
 def whole(name: str, value: Any, at_least: int) -> int:
     """Return an integer that is not below a bound."""
-    if isinstance(value, bool):
-        raise TypeError(f"{name} must be an integer, but is {value!r}")
-    number = index(value)
+    number = integer(name, value)
     if number < at_least:
         raise ValueError(f"{name} must be at least {at_least}, but is {value!r}")
     return number

@@ -1,7 +1,6 @@
 """`World`: many bodies, stepped from impact to impact, and what happened to them."""
 
 import copy
-import operator
 import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -16,7 +15,7 @@ from .protocols import Collidable
 from .queries import find_first, find_overlapping
 from .snapshots import pack_states, unpack_states
 from .stepper import Stepper, checked_step
-from .validation import finite, inverse_mass, not_negative, vector, whole
+from .validation import finite, integer, inverse_mass, not_negative, vector, whole
 from .world_records import Clock
 from .world_setup import Item, Setup, build_setup, inseparable_pair, with_query
 
@@ -107,9 +106,11 @@ class World:
             raise TypeError(f"a collider is needed, such as Particle(1.0), not {body.collider!r}")
         place = vector("position", body.position)
         velocity = vector("velocity", getattr(body, "velocity", (0.0, 0.0)))
+        mass = getattr(body, "mass", None)
+        inverse_mass("mass", mass)
         item = Item(
             body.collider,
-            inverse_mass("mass", getattr(body, "mass", None)),
+            None if mass is None else float(mass),
             not_negative("restitution", getattr(body, "restitution", 1.0)),
             _bits("category", category),
             _bits("mask", mask),
@@ -138,8 +139,7 @@ class World:
         """Return a body as it is now; changing it does not change the world."""
         item = self._items[self._index(index)]
         x, y, vx, vy = self._all_places()[index].tolist()
-        mass = 1.0 / item.inverse_mass if item.inverse_mass else None
-        return Body(item.collider, (x, y), (vx, vy), mass, item.restitution)
+        return Body(item.collider, (x, y), (vx, vy), item.mass, item.restitution)
 
     def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
         """Put a body somewhere, give it another velocity, or both.
@@ -315,6 +315,7 @@ class World:
         states = setup.new_state(1)
         motions = setup.motion_view(states)[0]
         motions[:] = places[setup.moving]
+        setup.left_as_view(states)[0] = motions
         inside = self._inside_table(states, setup)
         for row, sensor in enumerate(setup.sensing.tolist()):
             for body in range(len(self._items)):
@@ -382,7 +383,7 @@ class World:
         return found[:count]
 
     def _index(self, index: Any) -> int:
-        number = operator.index(index)
+        number = integer("the index of a body", index)
         if not 0 <= number < len(self._items):
             raise IndexError(f"there is no body {index!r}: there are {len(self._items)}")
         return number
@@ -390,7 +391,7 @@ class World:
 
 def _bits(name: str, value: Any) -> int:
     """Return an integer of 64 bits."""
-    number = operator.index(value)
+    number = integer(name, value)
     if not -(1 << 63) <= number < 1 << 63:
         raise ValueError(f"{name} must fit into 64 bits, but is {value!r}")
     return number

@@ -1,7 +1,7 @@
 """`WorldBatch`: copies of a world that are stepped together, by the kernel that steps one."""
 
 import itertools
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any
 
 import numpy as np
@@ -75,7 +75,12 @@ class WorldBatch:
         if self._pool is None:
             return self._steppers[0].step(length, number)
         running = [self._pool.submit(part.step, length, number) for part in self._steppers[1:]]
-        parts = [self._steppers[0].step(length, number), *(task.result() for task in running)]
+        try:
+            first = self._steppers[0].step(length, number)
+        finally:
+            # Nobody is still at work when this returns, not even if it raises.
+            wait(running)
+        parts = [first, *(task.result() for task in running)]
         for start, part in zip(self._starts, parts, strict=True):
             part["world"] += start
         return np.concatenate(parts)

@@ -142,6 +142,7 @@ Progress = _record(
         ("near", np.int64),
         ("full", np.int64),  # there was no room for another hit
         ("touching", np.int64),  # two bodies overlap or touch
+        ("crowded", np.int64),  # relaxation gave up, with overlaps left for the next step
     ]
 )
 

@@ -14,6 +14,7 @@ from .grid import NO_ONE, count_cells, fill_cells
 from .records import Edge, Shape
 from .shape_table import shape_table
 from .tournament import leaf_count
+from .validation import inverse_mass
 from .world_memory import CLOCK
 from .world_records import Header, Motion, Override, Plan, Progress, Trait
 
@@ -38,7 +39,7 @@ class Item:
     """What a world keeps of a body, besides its place and velocity."""
 
     collider: Collider
-    inverse_mass: float
+    mass: float | None
     restitution: float
     category: int
     mask: int
@@ -78,6 +79,11 @@ class Setup:
         part: FloatArray = states[:, CLOCK : self.header.left_as_at].view(np.float64)
         return part.reshape(len(states), len(self.moving), 4)
 
+    def left_as_view(self, states: Bytes) -> FloatArray:
+        """Return a view of the motions as the last step left them, like `motion_view`."""
+        part: FloatArray = states[:, self.header.left_as_at : self.header.plans_at].view(np.float64)
+        return part.reshape(len(states), len(self.moving), 4)
+
     def inside_view(self, states: Bytes) -> Bytes:
         """Return a view of who is inside, uint8 [num_worlds, sensors, bodies]."""
         size = len(self.sensing) * len(self.traits)
@@ -101,7 +107,7 @@ def build_setup(
     traits = np.zeros(len(items), Trait)
     for trait, item in zip(traits, items, strict=True):
         trait.collider = index[item.collider]
-        trait.inverse_mass = item.inverse_mass
+        trait.inverse_mass = inverse_mass("mass", item.mass)
         trait.restitution = item.restitution
         trait.category = item.category
         trait.mask = item.mask

@@ -1,0 +1,427 @@
+"""The world as an object: what it takes and gives, how it is edited, what it refuses."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from arkanoid.physics import (
+    BEGIN,
+    END,
+    HIT,
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Body,
+    Collider,
+    Convex,
+    HalfPlane,
+    Hit,
+    InseparableError,
+    Particle,
+    Rectangle,
+    World,
+    WorldBatch,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+FLOOR = Body(AxisAlignedHalfPlane("+y"))
+DISC = Particle(0.5)
+NAN, INF = math.nan, math.inf
+
+
+def random_world(seed: int, skip: int = -1) -> World:
+    """Return a crowded room with sensors, masks and overrides, perhaps without one of its bodies.
+
+    Built up from nothing, in one go: what is removed later must leave the same world.
+    """
+    rng = np.random.default_rng(seed)
+    shapes: tuple[Collider, ...] = (
+        Particle(0.3),
+        Particle(0.2),
+        AxisAlignedRectangle(0.6, 0.4),
+        Rectangle(0.5, 0.3, 0.7),
+        Convex([(-0.3, -0.2), (0.4, 0), (-0.2, 0.4)]),
+    )
+    rows: list[tuple[Body, dict[str, Any]]] = [
+        (Body(AxisAlignedHalfPlane("+x")), {}),
+        (Body(AxisAlignedHalfPlane("-x", -6)), {}),
+        (Body(AxisAlignedHalfPlane("+y")), {}),
+        (Body(AxisAlignedHalfPlane("-y", -4)), {}),
+    ]
+    for index in range(15):
+        place = (0.8 + index % 5 * 1.1, 0.8 + index // 5 * 1.1)
+        solid = index % 7 != 3
+        mass = None if index % 6 == 5 else float(rng.uniform(0.5, 2))
+        velocity = rng.normal(size=2) if solid and mass else (0, 0)
+        options = {"sensor": not solid, "category": int(rng.integers(1, 8))}
+        rows.append((Body(shapes[index % 5], place, velocity, mass, 0.9), options))
+    kept = [index for index in range(len(rows)) if index != skip]
+    world = World()
+    for index in kept:
+        world.add(rows[index][0], **rows[index][1])
+    for a, b in rng.integers(4, len(rows), (40, 2)).tolist():
+        if a != b and a in kept and b in kept:
+            world.set_restitution(kept.index(a), kept.index(b), 0.25)
+    return world
+
+
+def same(first: Any, second: Any) -> bool:
+    """Tell whether two arrays have the same bits."""
+    return bool(first.tobytes() == second.tobytes())
+
+
+# Bodies, in and out.
+
+
+def test_bodies_are_numbered_as_they_are_added() -> None:
+    world = World([FLOOR, Body(DISC, (1, 2), (3, 4), mass=5)])
+    assert world.add(Body(DISC, (7, 8))) == 2
+    assert len(world) == 3
+    assert world.positions.tolist() == [[0, 0], [1, 2], [7, 8]]
+    assert world.velocities.tolist() == [[0, 0], [3, 4], [0, 0]]
+    assert world.positions.dtype == world.velocities.dtype == np.float64
+    assert world.time == 0
+    assert world.capped == 0
+
+
+def test_an_empty_world_has_only_time() -> None:
+    world = World()
+    hits = world.step(2.5)
+    assert hits.dtype == Hit
+    assert hits.shape == (0,)
+    assert world.positions.shape == world.velocities.shape == (0, 2)
+    assert world.time == 2.5
+    assert len(world) == 0
+
+
+def test_the_world_takes_copies() -> None:
+    body = Body(DISC, (0, 0), (1, 0), mass=1)
+    world = World([body])
+    world.step(1.0)
+    assert body.position.tolist() == [0, 0]
+    body.velocity = (5, 5)
+    world.step(1.0)
+    assert world.positions.tolist() == [[2, 0]]
+
+
+@dataclass
+class Fog:
+    """Someone's own class with nothing but a shape and a place."""
+
+    collider: Collider
+    position: Any
+
+
+def test_ones_own_classes_are_bodies() -> None:
+    world = World([Fog(AxisAlignedHalfPlane("-x"), [3, 0]), Body(DISC, (0, 0), (1, 0), mass=1)])
+    (hit,) = world.step(3.0)
+    assert hit["time"] == 2.5
+    assert world.body(0).mass is None
+    assert world.body(0).restitution == 1
+
+
+@given(st.floats(1e-300, 1e300), st.floats(0, 10), st.floats(-10, 10), st.booleans())
+def test_a_body_comes_back_as_it_was_put_in(
+    mass: float, restitution: float, coordinate: float, is_static: bool
+) -> None:
+    """The mass came back as 1 / (1 / mass): 49 did, 41 did not."""
+    given_mass = None if is_static else mass
+    body = Body(DISC, (coordinate, 1), (2, coordinate), given_mass, restitution)
+    back = World([body]).body(0)
+    assert repr(back) == repr(body)
+
+
+def test_changing_a_body_that_came_back_does_not_change_the_world() -> None:
+    world = World([Body(DISC, (0, 0), (1, 0), mass=1)])
+    world.step(1.0)
+    back = world.body(0)
+    assert back.position.tolist() == [1, 0]
+    back.position = (9, 9)
+    back.velocity[:] = 9
+    assert world.positions.tolist() == [[1, 0]]
+    assert world.velocities.tolist() == [[1, 0]]
+
+
+def test_positions_are_copies_that_cannot_be_written_to() -> None:
+    world = World([Body(DISC, (0, 0), (1, 0), mass=1)])
+    world.step(1.0)
+    before, speed = world.positions, world.velocities
+    for array in (before, speed):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    world.step(1.0)
+    assert before.tolist() == [[1, 0]]
+    assert world.positions.tolist() == [[2, 0]]
+
+
+# Removal.
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.integers(4, 18))
+def test_a_world_without_a_body_is_one_that_never_had_it(seed: int, gone: int) -> None:
+    """Indices, overrides, sensors and masks all follow."""
+    edited, never = random_world(seed), random_world(seed, skip=gone)
+    edited.remove(gone)
+    for _ in range(3):
+        assert same(edited.step(0.3), never.step(0.3))
+    assert same(edited.positions, never.positions)
+    assert same(edited.velocities, never.velocities)
+
+
+def test_who_is_inside_follows_a_removal() -> None:
+    world = World([FLOOR])
+    sensor = world.add(Body(AxisAlignedRectangle(2, 2), (0, 5)), sensor=True)
+    ball = world.add(Body(Particle(0.1), (0, 5), (1, 0), mass=1))
+    assert world.step(0.5)["kind"].tolist() == [BEGIN]
+    world.remove(0)
+    (left,) = world.step(1.0)
+    assert left["kind"] == END
+    assert (left["a"], left["b"]) == (sensor - 1, ball - 1)
+    assert left["time"] == pytest.approx(1.1, rel=1e-15)
+
+
+def test_a_removed_sensor_and_a_removed_guest_are_forgotten() -> None:
+    for gone in (0, 1):
+        world = World()
+        world.add(Body(AxisAlignedRectangle(2, 2)), sensor=True)
+        world.add(Body(Particle(0.1), (0, 0), (1, 0), mass=1))
+        world.add(Body(Particle(0.1), (0.2, 0.5), (1, 0), mass=1))
+        assert len(world.step(0.1)) == 2
+        world.remove(gone)
+        hits = world.step(5.0)
+        assert hits["kind"].tolist() == ([] if gone == 0 else [END])
+        assert len(world) == 2
+
+
+def test_editing_keeps_time_and_motion() -> None:
+    world = World([Body(DISC, (0, 0), (1, 0.1), mass=1)])
+    world.step(0.1, steps=7)
+    before = world.positions, world.velocities, world.time
+    wall = world.add(Body(AxisAlignedHalfPlane("-x"), (3, 0)))
+    world.remove(wall)
+    assert same(world.positions, before[0])
+    assert same(world.velocities, before[1])
+    assert world.time == before[2]
+    world.step(0.1)
+    assert world.time == float(Fraction(0.1) * 8)
+
+
+# Places.
+
+
+def test_what_moves_can_be_put_elsewhere() -> None:
+    world = World([FLOOR, Body(DISC, (0, 3), (0, -1), mass=1)])
+    world.step(1.0)
+    world.place(1, (2, 10))
+    assert world.positions[1].tolist() == [2, 10]
+    assert world.velocities[1].tolist() == [0, -1]
+    world.place(1, velocity=(0, -5))
+    assert world.positions[1].tolist() == [2, 10]
+    (hit,) = world.step(2.0)
+    assert hit["time"] == pytest.approx(1 + 9.5 / 5)
+    world.place(1)
+    assert world.positions[1] == pytest.approx([2, 1], abs=1e-14)
+
+
+def test_what_is_static_can_be_put_elsewhere() -> None:
+    world = World([FLOOR, Body(DISC, (0, 3), (0, -1), mass=1)])
+    assert len(world.step(1.0)) == 0
+    world.place(0, (0, -5))
+    (hit,) = world.step(10.0)
+    assert hit["time"] == pytest.approx(7.5)
+    assert world.time == 11
+
+
+def test_a_static_body_with_a_velocity_begins_to_move() -> None:
+    world = World([FLOOR, Body(DISC, (0, 3), mass=1)])
+    assert len(world.step(5.0)) == 0
+    world.place(0, velocity=(0, 1))
+    (hit,) = world.step(4.0)
+    assert hit["time"] == pytest.approx(7.5)
+    assert world.velocities.tolist() == [[0, 1], [0, 2]]
+    world.place(0, velocity=(0, 0))
+    world.step(1.0)
+    assert world.positions[0].tolist() == [0, 4]
+
+
+def test_placing_at_any_moment_is_starting_there() -> None:
+    started = World([FLOOR, Body(DISC, (1, 4), (1, -2), mass=2, restitution=0.5)])
+    moved = World([FLOOR, Body(DISC, (9, 9), (0, -3), mass=2, restitution=0.5)])
+    moved.step(20.0)
+    moved.place(1, (1, 4), (1, -2))
+    assert len(moved.step(5.0)) == len(started.step(5.0)) == 1
+    np.testing.assert_allclose(moved.positions, started.positions, rtol=0, atol=1e-14)
+    assert same(moved.velocities, started.velocities)
+
+
+# Time and steps.
+
+
+@given(st.floats(0, 1e6), st.integers(1, 300))
+@settings(max_examples=50, deadline=None)
+def test_time_is_the_exact_sum_of_the_steps(dt: float, steps: int) -> None:
+    world = World([Body(DISC, (0, 0), mass=1)])
+    world.step(dt, steps)
+    assert world.time == float(Fraction(dt) * steps)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 12), st.booleans())
+def test_several_steps_are_one_after_the_other(seed: int, steps: int, is_edited: bool) -> None:
+    together, apart = random_world(seed), random_world(seed)
+    if is_edited:
+        for world in (together, apart):
+            world.step(0.3)
+            world.place(4, (3, 3), (1, 1))
+    hits = together.step(0.17, steps)
+    parts = np.concatenate([apart.step(0.17) for _ in range(steps)])
+    assert same(hits, parts)
+    assert same(together.positions, apart.positions)
+    assert same(together.velocities, apart.velocities)
+    assert together.time == apart.time
+    assert together.snapshot() == apart.snapshot()
+
+
+def test_a_step_of_no_time_changes_nothing() -> None:
+    world = random_world(3)
+    world.step(0.0)
+    places, speeds = world.positions, world.velocities
+    assert len(world.step(0.0, steps=5)) == 0
+    assert same(world.positions, places)
+    assert same(world.velocities, speeds)
+    assert world.time == 0
+
+
+def test_hits_belong_to_the_caller() -> None:
+    world = World([FLOOR, Body(DISC, (0, 1), (0, -1), mass=1)])
+    first = world.step(1.0)
+    kept = first.copy()
+    world.place(1, (4, 1), (0, -2))
+    world.step(1.0)
+    assert same(first, kept)
+    assert first[0]["kind"] == HIT
+
+
+# Restitution of a pair.
+
+
+def test_a_pair_has_its_own_restitution_until_it_is_taken_back() -> None:
+    world = World([FLOOR, Body(DISC, (0, 1.5), (0, -1), mass=1, restitution=0.5)])
+    world.set_restitution(1, 0, 2.0)
+    world.step(2.0)
+    assert world.velocities[1, 1] == 2
+    for override, expected in ((None, 0.5), (0.0, 0.0), (1.0, 1.0), (None, 0.5)):
+        world.place(1, (0, 1.5), (0, -1))
+        world.set_restitution(0, 1, override)
+        world.step(2.0)
+        assert world.velocities[1, 1] == expected
+
+
+# What is refused.
+
+TWO = [FLOOR, Body(DISC, (0, 2), (0, 1), mass=1)]
+WRONG: list[tuple[str, Any, type[Exception], str]] = [
+    ("no body", lambda w: w.add(3), TypeError, "needs a collider and a position; 3 lacks one"),
+    ("no collider", lambda w: w.add(Fog("disc", (0, 0))), TypeError, "collider.*not 'disc'"),  # type: ignore[arg-type]
+    ("place", lambda w: w.add(Fog(DISC, (0, NAN))), ValueError, r"position\[1\].*finite.*nan"),
+    ("place 3", lambda w: w.add(Fog(DISC, (0, 1, 2))), ValueError, "position.*two.*has 3"),
+    ("category", lambda w: w.add(FLOOR, category=1.0), TypeError, "category.*integer.*1.0"),
+    ("category", lambda w: w.add(FLOOR, category=1 << 63), ValueError, "category.*64 bits"),
+    ("mask", lambda w: w.add(FLOOR, mask=-(1 << 63) - 1), ValueError, "mask.*64 bits.*-9223"),
+    ("mask", lambda w: w.add(FLOOR, mask="all"), TypeError, "mask.*integer.*'all'"),
+    ("max_hits", lambda _: World(max_hits=0), ValueError, "max_hits must be at least 1.*0"),
+    ("max_hits", lambda _: World(max_hits=1.5), TypeError, "max_hits.*integer.*1.5"),  # type: ignore[arg-type]
+    ("bodies", lambda _: World([DISC]), TypeError, "collider and a position"),  # type: ignore[list-item]
+    ("remove", lambda w: w.remove(2), IndexError, "no body 2: there are 2"),
+    ("remove", lambda w: w.remove(-1), IndexError, "no body -1"),
+    ("remove", lambda w: w.remove(0.0), TypeError, "body.*integer.*0.0"),
+    ("body", lambda w: w.body(2), IndexError, "no body 2: there are 2"),
+    ("place", lambda w: w.place(5, (0, 0)), IndexError, "no body 5"),
+    ("place", lambda w: w.place(1, (0, INF)), ValueError, r"position\[1\].*finite.*inf"),
+    ("place", lambda w: w.place(1, 3), TypeError, "position must be two numbers.*3"),
+    ("place", lambda w: w.place(0, None, (NAN, 0)), ValueError, r"velocity\[0\].*finite.*nan"),
+    ("pair", lambda w: w.set_restitution(1, 1, 0.5), ValueError, "two bodies, but both are 1"),
+    ("pair", lambda w: w.set_restitution(0, 1, -0.5), ValueError, "restitution.*negative.*-0.5"),
+    ("pair", lambda w: w.set_restitution(0, 2, 0.5), IndexError, "no body 2"),
+    ("dt", lambda w: w.step(-0.1), ValueError, "dt must not be negative.*-0.1"),
+    ("dt", lambda w: w.step(NAN), ValueError, "dt must be finite.*nan"),
+    ("dt", lambda w: w.step(INF), ValueError, "dt must be finite.*inf"),
+    ("dt", lambda w: w.step("1"), TypeError, "dt must be a number.*'1'"),
+    ("dt", lambda w: w.step(None), TypeError, "dt must be a number.*None"),
+    ("steps", lambda w: w.step(1.0, 0), ValueError, "steps must be at least 1.*0"),
+    ("steps", lambda w: w.step(1.0, 2.0), TypeError, "steps.*integer.*2.0"),
+    ("steps", lambda w: w.step(1.0, True), TypeError, "steps.*integer.*True"),
+    ("batch", lambda w: WorldBatch(w, 0), ValueError, "num_worlds must be at least 1"),
+    ("batch", lambda w: WorldBatch(w, 2, threads=0), ValueError, "threads must be at least 1"),
+    ("batch", lambda w: WorldBatch(w, "2"), TypeError, "num_worlds.*integer.*'2'"),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize("is_built", [False, True])
+@pytest.mark.parametrize(
+    ("call", "error", "message"), [row[1:] for row in WRONG], ids=[row[0] for row in WRONG]
+)
+def test_what_is_wrong_is_refused_and_changes_nothing(
+    call: Any, error: type[Exception], message: str, is_built: bool
+) -> None:
+    world = World(TWO)
+    if is_built:
+        world.step(1.0)
+    before = world.positions, world.velocities, world.time, len(world)
+    with pytest.raises(error, match=message):
+        call(world)
+    assert same(world.positions, before[0])
+    assert same(world.velocities, before[1])
+    assert (world.time, len(world)) == before[2:]
+
+
+def test_a_body_that_outgrows_the_numbers_is_an_error_at_once() -> None:
+    """It was one in the step after, if at all: infinity equals itself, and the plans held on.
+
+    Between two walls that give back more than they get, a ball is faster and faster, until its
+    place is no number.
+    """
+    fast = World([Body(DISC, (0, 0), (1e300, 0), mass=1)])
+    room = World([FLOOR, Body(AxisAlignedHalfPlane("-y"), (0, 3))])
+    room.add(Body(DISC, (0, 1), (0, 1), mass=1, restitution=1.5))
+    for world in (fast, room):
+        before = world.snapshot()
+        for _ in range(2):
+            with pytest.raises(ValueError, match=r"not finite: .* outgrown"):
+                world.step(1e10)
+        world.restore(before)
+        world.step(1.0)
+        assert np.isfinite(world.positions).all()
+
+
+def test_two_bodies_that_nothing_separates_are_named() -> None:
+    """Two half-planes askew: the error says which, and the world can be mended."""
+    ramp = Body(HalfPlane((1, 2)), (3, 4), mass=1)
+    world = World([Body(DISC), FLOOR, ramp])
+    with pytest.raises(InseparableError, match="no finite translation separates") as caught:
+        world.step(1.0)
+    assert {repr(caught.value.a), repr(caught.value.b)} == {repr(FLOOR), repr(ramp)}
+    for part in (repr(FLOOR), repr(ramp)):
+        assert part in str(caught.value)
+    assert len(world) == 3
+    world.remove(1)
+    assert world.step(1.0).shape == (0,)
+
+
+@pytest.mark.parametrize("how", ["static", "masked", "sensor", "kinematic", "back to back"])
+def test_only_what_would_have_to_be_separated_is_inseparable(how: str) -> None:
+    world = World([FLOOR])
+    if how == "back to back":
+        world.add(Body(AxisAlignedHalfPlane("-y"), (0, 1), mass=1))
+    elif how == "kinematic":
+        world.add(Body(HalfPlane((1, 2)), (0, 0), velocity=(1, 0)))
+    else:
+        mass = None if how == "static" else 1.0
+        mask = 2 if how == "masked" else -1
+        world.add(Body(HalfPlane((1, 2)), mass=mass), mask=mask, sensor=how == "sensor")
+    world.step(1.0)
+    assert np.isfinite(world.positions).all()

@@ -1,0 +1,355 @@
+"""What no scene should contain and every scene does: overlaps, rest, squeezes, absurd numbers."""
+
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from arkanoid.physics import (
+    HIT,
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Body,
+    Collider,
+    Convex,
+    HalfPlane,
+    HitLimitWarning,
+    Particle,
+    Rectangle,
+    World,
+    contact,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+DISC = Particle(0.5)
+FLOOR = Body(AxisAlignedHalfPlane("+y"))
+
+SHAPES: tuple[Collider, ...] = (
+    DISC,
+    AxisAlignedRectangle(1, 0.6),
+    Rectangle(0.9, 0.5, 0.7),
+    Convex([(-0.5, -0.4), (0.6, 0), (-0.3, 0.5)]),
+)
+
+
+def worst_overlap(world: World) -> float:
+    """Return the depth of the worst overlap of a pair of which one is to give way."""
+    bodies = [world.body(index) for index in range(len(world))]
+    depths = [0.0]
+    for number, a in enumerate(bodies):
+        for b in bodies[:number]:
+            overlap = contact(a, b) if a.mass or b.mass else None
+            if overlap is not None:
+                depths.append(overlap.depth)
+    return max(depths)
+
+
+# Relaxation, as a step begins.
+
+
+@pytest.mark.parametrize("dt", [0.0, 1.0])
+def test_an_overlap_is_shared_by_the_reciprocal_of_mass(dt: float) -> None:
+    world = World([Body(DISC, (0, 0), mass=3), Body(DISC, (0.5, 0), mass=1)])
+    assert len(world.step(dt)) == 0
+    assert world.positions.tolist() == [[-0.125, 0], [0.875, 0]]
+    assert world.velocities.tolist() == [[0, 0], [0, 0]]
+
+
+@pytest.mark.parametrize("velocity", [(0, 0), (2, 0)])
+def test_what_has_no_mass_does_not_give_way(velocity: tuple[float, float]) -> None:
+    world = World([Body(DISC, (0, 0), velocity), Body(DISC, (0.25, 0), (3, 0), mass=1e9)])
+    world.step(0.0)
+    assert world.positions.tolist() == [[0, 0], [1, 0]]
+
+
+def test_static_and_kinematic_bodies_may_overlap_as_they_like() -> None:
+    bodies = [Body(DISC), Body(DISC, (0.1, 0)), Body(DISC, (0.2, 0), (0.1, 0)), FLOOR]
+    world = World([*bodies, Body(HalfPlane((1, 1)), (0, 0), (0, 0.1))])
+    before = world.positions
+    assert len(world.step(0.0)) == 0
+    assert world.positions.tolist() == before.tolist()
+    assert len(world.step(1.0)) == 0
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(2, 12))
+def test_a_heap_is_taken_apart(seed: int, count: int) -> None:
+    """Any shapes, on top of each other, on a floor: in a few steps nothing overlaps."""
+    rng = np.random.default_rng(seed)
+    world = World([FLOOR])
+    for _ in range(count):
+        shape, mass = SHAPES[rng.integers(len(SHAPES))], float(rng.uniform(0.1, 10))
+        world.add(Body(shape, rng.uniform((-1, -0.3), (1, 1.2)), mass=mass))
+    world.step(0.0, steps=100)
+    # NO_DEPTH is a fraction of the coordinates.
+    assert worst_overlap(world) <= 1e-12 * (1 + abs(world.positions).max())
+    assert world.velocities.tolist() == [[0, 0]] * (count + 1)
+    assert len(world.step(1.0)) == 0
+
+
+@pytest.mark.parametrize("count", [3, 10, 40])
+def test_a_chain_that_is_too_long_for_one_step_goes_on_in_the_next(count: int) -> None:
+    """Discs pushed into each other and into a wall: after one step's rounds, relaxation had ended.
+
+    Nobody had touched the world since, so the next step took it that nothing overlapped.
+    """
+    chain = [Body(DISC, (0.5 + 0.1 * index, 0), mass=1) for index in range(count)]
+    world = World([Body(AxisAlignedHalfPlane("+x")), *chain])
+    for _ in range(count * count // 4 + 20):
+        world.step(1.0)
+    assert worst_overlap(world) <= 1e-12 * (1 + 2 * count)
+    assert np.sort(world.positions[1:, 0]) == pytest.approx(np.arange(count) + 0.5, abs=1e-9)
+    assert world.velocities.tolist() == [[0, 0]] * (count + 1)
+
+
+def test_what_is_put_into_the_middle_of_a_wall_comes_out_on_the_near_side() -> None:
+    for y, out in ((0.1, 1.0), (-0.2, -1.0)):
+        world = World([Body(AxisAlignedRectangle(9, 1)), Body(DISC, (0, 9), mass=1)])
+        world.step(1.0)
+        world.place(1, (0, y))
+        world.step(1.0)
+        assert world.positions[1].tolist() == [0, out]
+
+
+@pytest.mark.parametrize("velocity", [(0, 0), (1, 0.5), (1e9, 1e-9)])
+def test_too_little_room_between_two_walls_is_no_trap(velocity: tuple[float, float]) -> None:
+    """A disc of width 1 between walls 0.8 apart. If it moves, it is said that it is squeezed."""
+    world = World([Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (0.8, 0))])
+    world.add(Body(DISC, (0.4, 0), velocity, mass=1))
+    for step in range(1, 4):
+        if velocity == (0, 0):
+            assert len(world.step(1.0)) == 0
+        else:
+            with pytest.warns(HitLimitWarning, match="10000 hits"):
+                world.step(1.0)
+        assert world.capped == (step if velocity != (0, 0) else 0)
+        assert np.isfinite(world.positions).all()
+        assert abs(world.positions[2, 0] - 0.4) < 0.2
+        assert world.time == step
+    # Given room, it is as free as before.
+    world.place(1, (5, 0))
+    hits = world.step(1e-9)
+    assert worst_overlap(world) <= 1e-12
+    assert len(hits) <= 2
+    assert abs(world.velocities[2]).tolist() == list(velocity)
+
+
+def test_twins_in_the_same_place_part() -> None:
+    for shape in SHAPES:
+        world = World([Body(shape, (3, 4), mass=1), Body(shape, (3, 4), mass=1)])
+        world.step(1.0)
+        assert worst_overlap(world) <= 1e-12
+        assert np.isfinite(world.positions).all()
+        assert world.positions.sum(axis=0) == pytest.approx([6, 8], abs=1e-14)
+
+
+# Rest and touch.
+
+
+def test_what_rests_rests() -> None:
+    touching = [Body(DISC, (x, 0.5), mass=1) for x in range(12)]
+    world = World([FLOOR, Body(AxisAlignedHalfPlane("+x"), (-0.5, 0)), *touching])
+    before = world.positions
+    for _ in range(10):
+        assert len(world.step(1e3)) == 0
+    assert world.positions.tolist() == before.tolist()
+
+
+@pytest.mark.parametrize("speed", [1.0, 1e9, 1e-9, 5e-324])
+def test_what_slides_along_a_wall_and_what_grazes_does_not_bounce(speed: float) -> None:
+    world = World([FLOOR, Body(DISC, (0, 0.5), (speed, 0), mass=1)])
+    world.add(Body(DISC, (5, 1.5), (-speed, 0), mass=1))
+    assert len(world.step(10.0)) == 0
+    assert world.positions[1:, 1].tolist() == [0.5, 1.5]
+
+
+@pytest.mark.parametrize("slope", [(0, 1), (1, 2), (-3, 1), (0.1, 0.7)])
+def test_an_inelastic_disc_stays_where_it_lands(slope: tuple[float, float]) -> None:
+    """It slides on along the wall, or rests: one hit, and no endless number of tiny ones."""
+    wall = Body(HalfPlane(slope), (0.1, 0.3))
+    world = World([wall, Body(DISC, (0.2, 9), (0.3, -3), mass=1, restitution=0)])
+    hits = np.concatenate([world.step(1.0) for _ in range(200)])
+    assert len(hits) == 1
+    normal = hits[0]["normal"]
+    assert world.velocities[1] @ normal == pytest.approx(0, abs=1e-15)
+    gap = (world.positions[1] - (0.1, 0.3)) @ normal - 0.5
+    assert gap == pytest.approx(0, abs=1e-12)
+
+
+def test_an_inelastic_disc_stops_in_a_corner() -> None:
+    world = World([FLOOR, Body(AxisAlignedHalfPlane("+x"))])
+    world.add(Body(DISC, (2, 3), (-1, -2), mass=1, restitution=0))
+    assert len(world.step(1e6)) == 2
+    assert world.positions[2].tolist() == [0.5, 0.5]
+    assert world.velocities[2].tolist() == [0, 0]
+
+
+def test_inelastic_discs_go_on_together() -> None:
+    world = World([Body(DISC, (0, 0), (3, 0), mass=1, restitution=0), Body(DISC, (4, 0), mass=2)])
+    hits = np.concatenate([world.step(1.0) for _ in range(100)])
+    assert len(hits) == 1
+    assert world.velocities == pytest.approx(np.array([[1, 0], [1, 0]]), abs=1e-15)
+    assert np.diff(world.positions[:, 0]) == pytest.approx([1], abs=1e-12)
+
+
+# Squeezes by what nothing moves.
+
+
+def test_a_squeezed_ball_is_said_to_be_and_is_free_when_the_paddle_leaves() -> None:
+    """A paddle drives a ball into a wall. The ball's hits are ever faster, without an end."""
+    world = World([Body(AxisAlignedHalfPlane("+x"))], max_hits=100)
+    paddle = world.add(Body(AxisAlignedRectangle(1, 4), (5, 0), (-1, 0)))
+    ball = world.add(Body(DISC, (2, 0), (-1, 0.125), mass=1))
+    with pytest.warns(HitLimitWarning, match="100 hits of a step"):
+        hits = world.step(4.0)
+    assert world.capped == 1
+    assert world.time == 4
+    assert len(hits) == 100
+    assert (np.diff(hits["time"]) >= 0).all()
+    assert hits["time"][-1] < 3.5
+    assert world.positions[paddle].tolist() == [1, 0]
+    assert world.velocities[paddle].tolist() == [-1, 0]
+    # Now it has no room left. Pushed out sideways or not: numbers, and time goes on.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HitLimitWarning)
+        world.step(0.25, steps=4)
+    assert world.time == 5
+    assert np.isfinite(world.positions).all()
+    world.place(paddle, (50, 0), (0, 0))
+    world.place(ball, velocity=(1, 0))
+    world.step(0.5)
+    x, y = world.positions[ball]
+    capped = world.capped
+    world.step(1.0)
+    assert world.positions[ball] == pytest.approx([x + 1, y], abs=1e-12)
+    assert world.capped == capped
+
+
+def test_the_cap_is_for_one_body_and_one_step() -> None:
+    """Three hits a step: a ball that would have ten has to wait, the others go on."""
+    room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))]
+    world = World([*room, Body(DISC, (1, 0), (10, 0), mass=1)], max_hits=3)
+    slow = world.add(Body(DISC, (0.5, 5), (0.125, 0), mass=1))
+    with pytest.warns(HitLimitWarning):
+        hits = world.step(1.0)
+    # The wall's distance from the middle, then to and fro.
+    assert hits["time"] == pytest.approx([0.05, 0.15, 0.25], rel=1e-13)
+    assert world.positions[2].tolist() == [1.5, 0]
+    assert world.positions[slow].tolist() == [0.625, 5]
+    with pytest.warns(HitLimitWarning):
+        hits = world.step(1.0)
+    assert hits["time"] == pytest.approx([1.1, 1.2, 1.3], rel=1e-13)
+    assert world.capped == 2
+
+
+def test_whoever_meets_a_body_that_waits_passes_and_is_relaxed_later() -> None:
+    """It waits at the left wall from 0.7 on; the other one comes by at 1.5, as the step ends."""
+    room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (3, 0))]
+    world = World([*room, Body(DISC, (1.5, 0), (10, 0), mass=1)], max_hits=4)
+    other = world.add(Body(DISC, (0.75, -3), (0, 2), mass=1))
+    with pytest.warns(HitLimitWarning):
+        assert len(world.step(1.5)) == 4
+    assert world.positions[2:].tolist() == [[0.5, 0], [0.75, 0]]
+    world.place(2, velocity=(0, 0))
+    world.place(other, velocity=(0, 0))
+    world.step(1.0)
+    assert worst_overlap(world) <= 1e-12
+    assert world.positions[2:].ravel() == pytest.approx([0.5, 0, 1.5, 0], abs=1e-11)
+
+
+def test_capped_without_hits_of_its_own_is_not_warned_of_again() -> None:
+    room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))]
+    world = World([*room, Body(DISC, (1, 0), (10, 0), mass=1)], max_hits=3)
+    with pytest.warns(HitLimitWarning):
+        world.step(1.0)
+    world.place(2, velocity=(0, 0.01))
+    assert len(world.step(0.1)) == 0
+    assert world.capped == 1
+
+
+# Absurd numbers.
+
+
+@pytest.mark.parametrize("length", [1e9, 1.0, 1e-9])
+@pytest.mark.parametrize("time", [1e9, 1.0, 1e-9])
+def test_scales_do_not_matter(length: float, time: float) -> None:
+    """The same scene in units of other sizes: the same story, though they are no powers of two."""
+
+    def scene(length: float, time: float) -> World:
+        speed = length / time
+        walls = [("+x", 0.0), ("-x", -6.0), ("+y", 0.0), ("-y", -4.0)]
+        world = World(Body(AxisAlignedHalfPlane(d, o * length)) for d, o in walls)  # type: ignore[arg-type]
+        world.add(Body(Rectangle(2 * length, length, 0.4), (3 * length, 2 * length)))
+        rng = np.random.default_rng(1)
+        for index in range(10):
+            place = np.array([0.7 + index % 5 * 1.1, 0.5 + index // 5 * 3.0]) * length
+            shape = Particle(0.3 * length)
+            world.add(Body(shape, place, rng.normal(size=2) * speed, mass=1))
+        return world
+
+    plain, scaled = scene(1.0, 1.0), scene(length, time)
+    expected, hits = plain.step(2.0), scaled.step(2.0 * time)
+    assert len(expected) > 10
+    assert hits[["a", "b"]].tolist() == expected[["a", "b"]].tolist()
+    np.testing.assert_allclose(hits["time"] / time, expected["time"], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(scaled.positions / length, plain.positions, rtol=0, atol=1e-9)
+
+
+extreme = st.one_of(
+    st.sampled_from([0.0, -0.0, 1e-9, -1e9, 1e9, 1e-150, 1e100, -1e-300, 5e-324, 0.5, -1.0]),
+    st.floats(-3, 3),
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(SHAPES),
+            st.tuples(extreme, extreme),
+            st.tuples(extreme, extreme),
+            st.sampled_from([None, 1.0, 1e-9, 1e9]),
+            st.sampled_from([0.0, 0.5, 1.0]),
+            st.booleans(),
+        ),
+        max_size=10,
+    ),
+    st.sampled_from([0.0, 1e-300, 1e-9, 1.0, 1e9]),
+    st.booleans(),
+)
+def test_no_input_hangs_or_makes_numbers_that_are_none(
+    rows: list[tuple[Any, ...]], dt: float, continuous: bool
+) -> None:
+    world = World(
+        [FLOOR, Body(HalfPlane((1, 3)), (0, -4)), Body(SHAPES[2], (1, 1))],
+        continuous=continuous,
+        max_hits=50,
+    )
+    for shape, place, velocity, mass, restitution, sensor in rows:
+        world.add(Body(shape, place, velocity, mass, restitution), sensor=sensor)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HitLimitWarning)
+        for _ in range(3):
+            hits = world.step(dt)
+            assert np.isfinite(world.positions).all()
+            assert np.isfinite(world.velocities).all()
+            for name in ("time", "normal", "point", "impulse"):
+                assert np.isfinite(hits[name]).all()
+            assert (np.diff(hits["time"]) >= 0).all()
+            assert (hits["a"] < hits["b"]).all()
+            bounces = hits[hits["kind"] == HIT]
+            assert np.hypot(*bounces["normal"].T) == pytest.approx(1, abs=1e-14)
+            assert (bounces["impulse"] <= 0).all()
+    assert world.time == pytest.approx(3 * dt, rel=1e-15)
+
+
+@pytest.mark.parametrize("continuous", [True, False])
+def test_worlds_without_anything_that_moves(continuous: bool) -> None:
+    for bodies in ([], [FLOOR], [FLOOR, Body(DISC), Body(DISC)]):
+        world = World(bodies, continuous=continuous)
+        for _ in range(3):
+            assert len(world.step(math.pi)) == 0
+        assert world.time == pytest.approx(3 * math.pi, rel=1e-15)
+        assert world.positions.tolist() == [[0, 0]] * len(bodies)
