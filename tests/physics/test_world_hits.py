@@ -1,0 +1,311 @@
+"""Hits and what they do: speeds in closed form, who meets whom, and the lecture's procedure."""
+
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+from arkanoid.physics import (
+    HIT,
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Body,
+    Collider,
+    Convex,
+    HalfPlane,
+    Particle,
+    Rectangle,
+    World,
+    bounce,
+    contact,
+    detect,
+    relax,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+DISC = Particle(0.5)
+FLOOR = Body(AxisAlignedHalfPlane("+y"))
+
+SHAPES: tuple[Collider, ...] = (
+    DISC,
+    AxisAlignedRectangle(1, 0.6),
+    Rectangle(0.9, 0.5, 0.7),
+    Convex([(-0.5, -0.4), (0.6, 0), (-0.3, 0.5)]),
+)
+
+
+def moving_scene(seed: int) -> list[Body]:
+    """Return walls, two obstacles, a kinematic body and twelve that move, apart from each other."""
+    rng = np.random.default_rng(seed)
+    bodies = [
+        Body(HalfPlane((1, 0.1)), (0, 0)),
+        Body(HalfPlane((-1, 0.05)), (9, 0)),
+        Body(AxisAlignedHalfPlane("+y")),
+        Body(AxisAlignedHalfPlane("-y"), (0, 7)),
+        Body(Rectangle(1, 2, 0.3), (3, 3.4)),
+        Body(Convex([(0, 0), (1, 0.2), (0.4, 1)]), (6.2, 3.2)),
+        Body(AxisAlignedRectangle(0.5, 0.5), (4.7, 3.4), (0.1, 0)),
+    ]
+    for index in range(12):
+        place = (1.6 + index % 6 * 1.2, (0.9, 5.9)[index // 6])
+        bodies.append(
+            Body(
+                SHAPES[index % 4],
+                place,
+                rng.normal(size=2) * 1.5,
+                mass=float(rng.uniform(0.2, 5)),
+                restitution=float(rng.choice([0.5, 1.0])),
+            )
+        )
+    return bodies
+
+
+# What a hit says.
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_hits_tell_all_that_happened(seed: int) -> None:
+    """The bodies fly straight from hit to hit, and each hit's impulse is all that changes them.
+
+    And there the two touch: at the point, back to back along the normal, having approached.
+    """
+    bodies = moving_scene(seed)
+    world = World(bodies)
+    hits = np.concatenate([world.step(0.5) for _ in range(6)])
+    assert len(hits) > 15
+    assert (np.diff(hits["time"]) >= 0).all()
+    assert (hits["kind"] == HIT).all()
+    now = 0.0
+    for hit in hits:
+        a, b = bodies[hit["a"]], bodies[hit["b"]]
+        assert hit["a"] < hit["b"]
+        for body in bodies:
+            body.position = body.position + body.velocity * (hit["time"] - now)
+        now = hit["time"]
+        check_touch(a, b, hit["normal"], hit["point"])
+        approach = (a.velocity - b.velocity) @ hit["normal"]
+        assert approach > 0
+        for body, sign in ((a, 1), (b, -1)):
+            if body.mass is not None:
+                change = sign * hit["impulse"] / body.mass * hit["normal"]
+                body.velocity = body.velocity + change
+        left = (a.velocity - b.velocity) @ hit["normal"]
+        assert left == pytest.approx(-a.restitution * b.restitution * approach, abs=1e-12)
+    places = [body.position + body.velocity * (3.0 - now) for body in bodies]
+    np.testing.assert_allclose(world.positions, places, rtol=0, atol=1e-11)
+    velocities = [body.velocity for body in bodies]
+    np.testing.assert_allclose(world.velocities, velocities, rtol=0, atol=1e-11)
+
+
+def check_touch(a: Body, b: Body, normal: Any, point: Any) -> None:
+    """Check that two bodies touch at a point, along a normal from a to b."""
+    near = 1e-8
+    overlap = contact(a, b)
+    assert overlap is None or overlap.depth < 1e-9
+    assert np.hypot(*normal) == pytest.approx(1, abs=1e-15)
+    assert detect(a, Body(b.collider, b.position - near * normal))
+    assert not detect(a, Body(b.collider, b.position + near * normal))
+    for body in (a, b):
+        # On the surface: a small disc there reaches into it, a point is not deep inside.
+        assert detect(Body(Particle(near), point), body)
+        depth = contact(Body(Particle(0), point), body)
+        assert depth is None or depth.depth < near
+
+
+def test_each_pair_once_and_static_pairs_never() -> None:
+    overlapping = [Body(AxisAlignedRectangle(2, 2), (x, 0)) for x in (0, 0.5)]
+    world = World([*overlapping, FLOOR, Body(DISC, (0.25, 5), (0, -1), mass=1)])
+    hits = world.step(4.0)
+    # Both boxes are met at once: the first one turns the disc round, the other one then sees it go.
+    assert hits[["a", "b"]].tolist() == [(0, 3)]
+    assert hits["time"].tolist() == [3.5]
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_normal_goes_from_the_lower_index_to_the_higher(swapped: bool) -> None:
+    pair = [Body(DISC, (0, 0), (1, 0), mass=1), Body(AxisAlignedHalfPlane("-x"), (2, 0))]
+    (hit,) = World(pair[::-1] if swapped else pair).step(2.0)
+    assert (hit["a"], hit["b"]) == (0, 1)
+    assert hit["normal"].tolist() == ([-1, 0] if swapped else [1, 0])
+    assert hit["point"].tolist() == [2, 0]
+    assert hit["impulse"] == -2
+
+
+def test_a_cradle_hands_the_speed_on() -> None:
+    """Touching discs: hits of one moment, one after the other."""
+    world = World(Body(DISC, (x, 0), mass=1) for x in range(1, 6))
+    first = world.add(Body(DISC, (-3, 0), (2, 0), mass=1))
+    hits = world.step(3.0)
+    assert hits["time"] == pytest.approx([1.5] * 5, rel=1e-13)
+    assert hits[["a", "b"]].tolist() == [(0, first), (0, 1), (1, 2), (2, 3), (3, 4)]
+    assert world.velocities[:, 0].tolist() == [0, 0, 0, 0, 2, 0]
+
+
+# Speeds after a hit.
+
+
+@given(
+    st.floats(0.1, 10),
+    st.floats(0.1, 10),
+    st.floats(-5, 5),
+    st.floats(0.01, 5),
+    st.sampled_from([0.0, 0.5, 1.0, 1.5]),
+    st.booleans(),
+)
+@settings(max_examples=100, deadline=None)
+def test_two_discs_head_on(
+    m1: float, m2: float, v2: float, approach: float, e: float, is_override: bool
+) -> None:
+    own = (0.3, 0.7) if is_override else (e, 1.0)
+    v1 = v2 + approach
+    world = World(
+        [
+            Body(DISC, (0, 0), (v1, 0.25), m1, own[0]),
+            Body(DISC, (3, 0), (v2, 0.25), m2, own[1]),
+        ]
+    )
+    if is_override:
+        world.set_restitution(0, 1, e)
+    duration = 2 * 2 / approach
+    (hit,) = world.step(duration)
+    centre = (m1 * v1 + m2 * v2) / (m1 + m2)
+    expected = [centre - e * m2 * approach / (m1 + m2), centre + e * m1 * approach / (m1 + m2)]
+    assert hit["time"] == pytest.approx(duration / 2, rel=1e-12)
+    assert world.velocities[:, 0] == pytest.approx(expected, rel=1e-13, abs=1e-13)
+    assert world.velocities[:, 1].tolist() == [0.25, 0.25]
+    assert hit["impulse"] == pytest.approx(-(1 + e) * approach * m1 * m2 / (m1 + m2), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("e", "times"),
+    [
+        (0.0, [1]),
+        (0.5, [1, 3, 7, 15]),
+        (1.0, [1, 2, 3, 4, 5]),
+        (2.0, [1, 1.5, 1.75, 1.875, 1.9375]),
+    ],
+)
+def test_each_hit_changes_the_next_flight(e: float, times: list[float]) -> None:
+    """Between floor and ceiling each flight takes 1 / e times as long as the one before."""
+    world = World([FLOOR, Body(AxisAlignedHalfPlane("-y"), (0, 2))])
+    world.add(Body(DISC, (0, 0.5), (0, 1), mass=1, restitution=e))
+    hits = world.step(times[-1])
+    assert hits["time"].tolist() == times
+    assert world.velocities[2, 1] == (-e) ** len(times)
+
+
+# Who is moved by nothing.
+
+
+@given(
+    st.floats(-3, 3),
+    st.floats(0.1, 5),
+    st.sampled_from([0.0, 0.5, 1.0, 1.5]),
+    st.sampled_from([1e-9, 1.0, 1e9]),
+)
+@settings(max_examples=60, deadline=None)
+def test_a_paddle_hits_a_ball_and_does_not_feel_it(
+    paddle: float, approach: float, e: float, mass: float
+) -> None:
+    world = World([Body(AxisAlignedRectangle(1, 4), (0, 0), (paddle, 0.5))])
+    world.add(Body(DISC, (4, 0), (paddle - approach, 0.5), mass, e))
+    (hit,) = world.step(6 / approach)
+    assert hit["time"] == pytest.approx(3 / approach, rel=1e-13)
+    assert hit["normal"].tolist() == [1, 0]
+    assert world.velocities[0].tolist() == [paddle, 0.5]
+    assert world.velocities[1] == pytest.approx([paddle + e * approach, 0.5], rel=1e-14, abs=1e-14)
+    assert world.positions[0] == pytest.approx([paddle * 6 / approach, 3 / approach], rel=1e-13)
+    assert hit["impulse"] == pytest.approx(-(1 + e) * approach * mass, rel=1e-13)
+
+
+def test_kinematic_bodies_pass_through_each_other_and_through_walls() -> None:
+    world = World([FLOOR, Body(DISC, (0, 2), (1, 0)), Body(DISC, (4, 2), (-1, -1))])
+    assert len(world.step(5.0)) == 0
+    assert world.positions[1:].tolist() == [[5, 2], [-1, -3]]
+
+
+# Masks.
+
+bits = st.integers(-1, 7)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(bits, bits), min_size=2, max_size=5))
+def test_two_meet_if_each_has_a_bit_of_the_other(filters: list[tuple[int, int]]) -> None:
+    """Every pair alone, and all in one place, where those that meet push each other."""
+    for (number, one), (index, other) in combinations(enumerate(filters), 2):
+        world = World()
+        world.add(Body(DISC, (0, 0), (1, 0), mass=1), category=one[0], mask=one[1])
+        world.add(Body(DISC, (3, 0), mass=1), category=other[0], mask=other[1])
+        meets = one[0] & other[1] and other[0] & one[1]
+        assert number < index
+        assert len(world.step(4.0)) == bool(meets)
+        world.place(0, (0, 0))
+        world.place(1, (0.5, 0))
+        world.step(0.0)
+        assert (world.positions[:, 0].tolist() == [-0.25, 0.75]) == bool(meets)
+
+
+# The lecture's procedure.
+
+
+def by_hand(bodies: list[Body], dt: float) -> list[tuple[int, int]]:
+    """Move all, then detect, relax and bounce pair by pair; return the pairs that overlapped.
+
+    Every body that moves, in order, meets walls without end, then other static ones, then those
+    that move and come later.
+    """
+    moving = [i for i, body in enumerate(bodies) if body.mass or body.velocity.any()]
+    static = [i for i in range(len(bodies)) if i not in moving]
+    walls = [i for i in static if isinstance(bodies[i].collider, HalfPlane | AxisAlignedHalfPlane)]
+    static = walls + [i for i in static if i not in walls]
+    for i in moving:
+        bodies[i].position = bodies[i].position + dt * bodies[i].velocity
+    met = []
+    for i in moving:
+        for j in static + [j for j in moving if j > i]:
+            a, b = bodies[i], bodies[j]
+            overlap = contact(a, b) if a.mass or b.mass else None
+            if overlap is not None:
+                relax(a, b, overlap)
+                bounce(a, b, overlap.normal)
+                met.append((min(i, j), max(i, j)))
+    return met
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_discrete_steps_are_the_procedure_by_hand(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bodies = [
+        Body(HalfPlane((1, 0.1))),
+        Body(AxisAlignedHalfPlane("-x"), (4, 0)),
+        Body(AxisAlignedHalfPlane("+y")),
+        Body(AxisAlignedHalfPlane("-y"), (0, 4)),
+        Body(Rectangle(1, 1, 0.4), (2, 2)),
+        Body(AxisAlignedRectangle(0.8, 0.3), (2, 0.5), (0.3, 0.1)),
+    ]
+    for index in range(5):
+        place, velocity = rng.uniform(0.5, 3.5, 2), rng.normal(size=2)
+        mass, e = float(rng.uniform(0.3, 3)), float(rng.uniform(0.5, 1))
+        bodies.append(Body(SHAPES[index % 4], place, velocity, mass, e))
+    world = World(bodies, continuous=False)
+    total = 0
+    for step in range(40):
+        hits = world.step(0.125)
+        met = by_hand(bodies, 0.125)
+        assert hits[["a", "b"]].tolist() == met
+        assert (hits["time"] == 0.125 * (step + 1)).all()
+        total += len(met)
+        places = [body.position for body in bodies]
+        np.testing.assert_allclose(world.positions, places, rtol=0, atol=1e-9)
+        velocities = [body.velocity for body in bodies]
+        np.testing.assert_allclose(world.velocities, velocities, rtol=0, atol=1e-9)
+    assert total > 15
+
+
+def test_discrete_steps_tunnel_and_continuous_ones_do_not() -> None:
+    wall, ball = Body(AxisAlignedRectangle(0.1, 4)), Body(DISC, (-5, 0), (10, 0), mass=1)
+    assert len(World([wall, ball], continuous=False).step(1.0)) == 0
+    (hit,) = World([wall, ball]).step(1.0)
+    assert hit["time"] == pytest.approx(0.445, rel=1e-15)
