@@ -24,9 +24,12 @@ def unpack_states(snapshot: bytes, states: Bytes, memory: Bytes) -> None:
     """Write a snapshot into the states that it was taken of.
 
     Raises:
+        TypeError: if it is not bytes.
         ValueError: if it is corrupt, of another version, or of another world or batch; the states
             are as they were then.
     """
+    if not isinstance(snapshot, bytes | bytearray | memoryview):
+        raise TypeError(f"a snapshot must be bytes, but is a {type(snapshot).__name__}")
     if len(snapshot) < _HEADER.size or snapshot[: len(_MAGIC)] != _MAGIC:
         raise ValueError("this is no snapshot of a world")
     _, version, digest, checksum, length = _HEADER.unpack_from(snapshot)

@@ -1,0 +1,258 @@
+"""Worlds as data: what goes on from a snapshot, a pickle or a copy is the same to the last bit."""
+
+import copy
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from arkanoid.physics import (
+    BEGIN,
+    END,
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Body,
+    Collider,
+    Convex,
+    Particle,
+    Rectangle,
+    World,
+    WorldBatch,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+SHAPES: tuple[Collider, ...] = (
+    Particle(0.3),
+    AxisAlignedRectangle(0.6, 0.4),
+    Rectangle(0.5, 0.3, 0.7),
+    Convex([(-0.3, -0.2), (0.4, 0), (-0.2, 0.4)]),
+)
+
+
+def make_world(seed: int, continuous: bool = True) -> World:
+    """Return a room of twelve that move, a kinematic body, and sensors, of which one moves."""
+    rng = np.random.default_rng(seed)
+    world = World(
+        [
+            Body(AxisAlignedHalfPlane("+x")),
+            Body(AxisAlignedHalfPlane("-x", -6)),
+            Body(AxisAlignedHalfPlane("+y")),
+            Body(AxisAlignedHalfPlane("-y", -5)),
+            Body(AxisAlignedRectangle(1, 0.25), (3, 2.4), (0.1, 0)),
+        ],
+        continuous=continuous,
+    )
+    for index in range(12):
+        place = (0.8 + index % 4 * 1.4, 0.6 + index // 4 * 1.5)
+        world.add(Body(SHAPES[index % 4], place, rng.normal(size=2) * 2, float(1 + index % 3), 0.9))
+    world.add(Body(AxisAlignedRectangle(2, 2), (2, 2)), sensor=True)
+    world.add(Body(Particle(1), (4, 3), (-0.1, 0)), sensor=True)
+    world.set_restitution(5, 6, 0.5)
+    return world
+
+
+def go_on(world: World, steps: int = 5) -> list[bytes]:
+    """Return all bits of some steps."""
+    bits = []
+    for _ in range(steps):
+        hits = world.step(0.25)
+        bits += [hits.tobytes(), world.positions.tobytes(), world.velocities.tobytes()]
+    return [*bits, str((world.time, world.capped)).encode()]
+
+
+seeds = st.integers(0, 10**6)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seeds, st.integers(0, 12), st.integers(0, 12), st.booleans())
+def test_a_restored_world_goes_on_to_the_bit(
+    seed: int, before: int, between: int, continuous: bool
+) -> None:
+    world, fresh = make_world(seed, continuous), make_world(seed, continuous)
+    for _ in range(before):
+        world.step(0.25)
+    kept = world.snapshot()
+    assert world.snapshot() == kept
+    expected = go_on(world)
+    for _ in range(between):
+        world.step(0.3)
+    for other in (world, fresh):
+        other.restore(kept)
+        assert other.snapshot() == kept
+        assert go_on(other) == expected
+
+
+def test_snapshots_hold_who_is_inside() -> None:
+    world = World()
+    world.add(Body(AxisAlignedRectangle(2, 2)), sensor=True)
+    world.add(Body(Particle(0.5), (-2, 0), (1, 0), mass=1))
+    outside = world.snapshot()
+    assert world.step(1.0)["kind"].tolist() == [BEGIN]
+    inside = world.snapshot()
+    assert world.step(3.0)["kind"].tolist() == [END]
+    world.restore(inside)
+    assert world.step(3.0)["kind"].tolist() == [END]
+    world.restore(outside)
+    assert world.step(4.0)["kind"].tolist() == [BEGIN, END]
+
+
+def test_a_snapshot_after_many_hits_in_one_step() -> None:
+    world = World([Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))])
+    world.add(Body(Particle(0.5), (1, 0), (1000, 1), mass=1))
+    kept = world.snapshot()
+    first = world.step(1.0)
+    assert len(first) == 1000
+    world.restore(kept)
+    assert world.step(1.0).tobytes() == first.tobytes()
+
+
+def test_restoring_undoes_places_and_time() -> None:
+    world = make_world(1)
+    world.step(0.5)
+    kept, expected = world.snapshot(), go_on(world)
+    world.restore(kept)
+    world.place(7, (3, 3), (9, 9))
+    world.restore(kept)
+    assert world.time == 0.5
+    assert go_on(world) == expected
+
+
+# Refusals.
+
+
+def changed(content: bytes, at: int) -> bytes:
+    return content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :]
+
+
+def test_a_snapshot_that_is_none_is_refused() -> None:
+    world = make_world(1)
+    world.step(0.5)
+    kept = world.snapshot()
+    wrong: list[tuple[Any, type[Exception], str]] = [
+        (b"", ValueError, "no snapshot"),
+        (b"arkanoid-world", ValueError, "no snapshot"),
+        (b"x" * len(kept), ValueError, "no snapshot"),
+        (changed(kept, 3), ValueError, "no snapshot"),
+        (changed(kept, 14), ValueError, "of version 0, and this is version 1"),
+        (changed(kept, 20), ValueError, "another world"),
+        (kept[:-1], ValueError, "corrupt: it is cut short"),
+        (kept[:60], ValueError, "corrupt"),
+        (kept + b"\0", ValueError, "corrupt"),
+        (changed(kept, 33), ValueError, "corrupt"),
+        (changed(kept, 40), ValueError, "corrupt"),
+        (changed(kept, 100), ValueError, "corrupt"),
+        (changed(kept, len(kept) - 1), ValueError, "corrupt"),
+        ("snapshot", TypeError, "must be bytes.*str"),
+        (None, TypeError, "must be bytes.*NoneType"),
+    ]
+    for content, error, message in wrong:
+        with pytest.raises(error, match=message):
+            world.restore(content)
+    assert world.snapshot() == kept
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda w: w.add(Body(Particle(1))),
+        lambda w: w.remove(3),
+        lambda w: w.place(0, (0.1, 0)),
+        lambda w: w.set_restitution(5, 7, 0.5),
+        lambda w: w.set_restitution(5, 6, None),
+    ],
+)
+def test_a_snapshot_of_another_world_is_refused(edit: Callable[[World], Any]) -> None:
+    kept, world = make_world(1).snapshot(), make_world(1)
+    world.restore(kept)
+    edit(world)
+    with pytest.raises(ValueError, match="another world"):
+        world.restore(kept)
+    world.step(0.1)
+
+
+def test_worlds_that_differ_in_a_body_refuse_each_others_snapshots() -> None:
+    disc = Particle(0.5)
+    variants = [
+        World([Body(disc, (0, 0), (1, 0), mass=1)]),
+        World([Body(disc, (0, 0), (1, 0), mass=2)]),
+        World([Body(disc, (0, 0), (1, 0), mass=1, restitution=0.5)]),
+        World([Body(Particle(0.25), (0, 0), (1, 0), mass=1)]),
+        World([Body(disc, (0, 0), (1, 0), mass=1)], max_hits=5),
+        World([Body(disc, (0, 0), (1, 0), mass=1)], continuous=False),
+        World([Body(disc, (0, 0), (1, 0))]),
+    ]
+    for category, mask, sensor in ((2, -1, False), (1, 3, False), (1, -1, True)):
+        world = World()
+        world.add(Body(disc, (0, 0), (1, 0), 1), category=category, mask=mask, sensor=sensor)
+        variants.append(world)
+    for number, world in enumerate(variants):
+        for index, other in enumerate(variants):
+            if index != number:
+                with pytest.raises(ValueError, match="another world"):
+                    world.restore(other.snapshot())
+
+
+def test_batches_and_worlds_share_snapshots_if_there_is_one_world() -> None:
+    world = make_world(2)
+    batch = WorldBatch(world, 1)
+    world.step(0.5)
+    batch.restore(world.snapshot())
+    assert batch.snapshot() == world.snapshot()
+    batch.step(0.5)
+    world.step(0.5)
+    assert batch.snapshot() == world.snapshot()
+    with pytest.raises(ValueError, match="another number of worlds"):
+        WorldBatch(world, 2).restore(world.snapshot())
+
+
+# Pickles and copies.
+
+
+def pickled(world: World) -> World:
+    twin: World = pickle.loads(pickle.dumps(world))
+    return twin
+
+
+@settings(max_examples=20, deadline=None)
+@given(seeds, st.integers(0, 8), st.sampled_from([pickled, copy.deepcopy, copy.copy]))
+def test_a_copy_goes_on_to_the_bit_and_leaves_the_original_alone(
+    seed: int, steps: int, duplicate: Callable[[World], World]
+) -> None:
+    world, control = make_world(seed), make_world(seed)
+    for each in (world, control):
+        for _ in range(steps):
+            each.step(0.25)
+    twin = duplicate(world)
+    assert twin.snapshot() == world.snapshot()
+    expected = go_on(control)
+    assert go_on(twin) == expected
+    assert go_on(world) == expected
+
+
+@pytest.mark.parametrize("duplicate", [pickled, copy.deepcopy, copy.copy])
+@pytest.mark.parametrize("is_stepped", [False, True])
+def test_a_copy_is_edited_alone(duplicate: Callable[[World], World], is_stepped: bool) -> None:
+    world, control = make_world(3), make_world(3)
+    if is_stepped:
+        world.step(0.25)
+        control.step(0.25)
+    twin = duplicate(world)
+    twin.place(6, (3, 3), (4, 4))
+    twin.set_restitution(5, 6, None)
+    twin.remove(0)
+    twin.add(Body(Particle(0.25), (1, 1), (1, 0), mass=1))
+    twin.step(0.5)
+    assert len(world) == len(control)
+    assert go_on(world) == go_on(control)
+
+
+def test_a_copy_of_an_edited_world_holds_the_edits() -> None:
+    world = make_world(4)
+    world.step(0.25, steps=3)
+    world.add(Body(Particle(0.25), (1, 1), (1, 0), mass=1))
+    world.place(0, (-0.5, 0))
+    twin = pickled(world)
+    assert twin.time == world.time == 0.75
+    assert go_on(twin) == go_on(world)
