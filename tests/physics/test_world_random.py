@@ -1,0 +1,233 @@
+"""Random worlds against a simulation without any cleverness, and the laws that hold for all.
+
+The simulation knows no grid, no plans and no order of events: it asks every pair for its time of
+impact, flies all bodies to the first of these times, lets that pair bounce, and asks every pair
+again.
+"""
+
+import math
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+from arkanoid.physics import (
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Body,
+    Collider,
+    Convex,
+    HalfPlane,
+    Particle,
+    Rectangle,
+    World,
+    bounce,
+    contact,
+    detect,
+    time_of_impact,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+Rng = np.random.Generator
+
+
+def random_shape(rng: Rng, size: float) -> Collider:
+    """Return a shape of any bounded kind that reaches about as far as its size."""
+    kind, angle = rng.integers(4), rng.uniform(0, math.tau)
+    if kind == 0:
+        return Particle(size)
+    if kind == 1:
+        return AxisAlignedRectangle(size * 1.5, size)
+    if kind == 2:
+        return Rectangle(size * 1.5, size, angle)
+    corners = np.sort(rng.uniform(0, 0.8, 5)) + np.arange(5)
+    turned = angle + corners * math.tau / 5
+    return Convex(size * np.column_stack([np.cos(turned), np.sin(turned)]))
+
+
+def scattered(rng: Rng, count: int, width: float, others: list[Body]) -> list[Body]:
+    """Return bodies that move, of all sizes, where they overlap neither each other nor others."""
+    bodies: list[Body] = []
+    while len(bodies) < count:
+        size = 0.1 * 6 ** rng.uniform()
+        body = Body(
+            random_shape(rng, size),
+            rng.uniform(0.5, width - 0.5, 2),
+            rng.normal(size=2),
+            mass=size**2 * rng.uniform(0.5, 2),
+            restitution=float(rng.choice([1.0, 1.0, 0.8])),
+        )
+        if not any(detect(body, other) for other in [*others, *bodies]):
+            bodies.append(body)
+    return bodies
+
+
+def walls(width: float) -> list[Body]:
+    """Return four walls of three unbounded kinds about a room."""
+    return [
+        Body(AxisAlignedHalfPlane("+x")),
+        Body(HalfPlane((-1, 0.02), -width)),
+        Body(Convex.from_half_planes(HalfPlane((-0.05, 1)), HalfPlane((0.03, 1), 0.1))),
+        Body(AxisAlignedHalfPlane("-y"), (0, width)),
+    ]
+
+
+def crowd(seed: int, width: float = 9.0, count: int = 14) -> list[Body]:
+    """Return a room with obstacles, a giant, a kinematic body, and many that move."""
+    rng = np.random.default_rng(seed)
+    fixed = walls(width)
+    fixed.append(Body(Rectangle(6, 0.5, 0.1), (4, 7.5), (0, -0.3), mass=20))  # the giant
+    fixed.append(Body(AxisAlignedRectangle(0.6, 0.6), (0.8, 2), (0.4, 0.1)))
+    for index in range(8):
+        shape = random_shape(rng, float(rng.uniform(0.1, 0.4)))
+        fixed.append(Body(shape, (1.5 + index % 4 * 2, 3.2 + index // 4 * 2)))
+    return fixed + scattered(rng, count, width, fixed)
+
+
+def brute_force(bodies: list[Body], duration: float) -> list[tuple[Any, ...]]:
+    """Simulate; return (time, a, b, normal, impulse) of every hit. The bodies are changed."""
+    now, hits = 0.0, []
+    pairs = [
+        (i, j)
+        for i, j in combinations(range(len(bodies)), 2)
+        if bodies[i].mass is not None or bodies[j].mass is not None
+    ]
+    while True:
+        best, pair, normal = duration - now, None, np.zeros(2)
+        for i, j in pairs:
+            a, b = bodies[i], bodies[j]
+            impact = time_of_impact(a, b, best)
+            if impact is None or (pair is not None and impact.time >= best):
+                continue
+            # What has just bounced may still overlap, by rounding.
+            if impact.time > 0 or (a.velocity - b.velocity) @ impact.normal > 1e-12:
+                best, pair, normal = impact.time, (i, j), impact.normal
+        for body in bodies:
+            body.position = body.position + body.velocity * best
+        now += best
+        if pair is None:
+            return hits
+        impulse = bounce(bodies[pair[0]], bodies[pair[1]], normal)
+        hits.append((now, *pair, normal, impulse))
+
+
+def deepest(bodies: list[Body]) -> float:
+    """Return the depth of the deepest overlap of two bodies of which one would give way."""
+    overlaps = [contact(a, b) for a, b in combinations(bodies, 2) if a.mass or b.mass]
+    return max((overlap.depth for overlap in overlaps if overlap is not None), default=0.0)
+
+
+def all_bodies(world: World) -> list[Body]:
+    return [world.body(index) for index in range(len(world))]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**9), st.integers(1, 5))
+def test_the_hits_are_those_of_brute_force(seed: int, steps: int) -> None:
+    bodies = crowd(seed)
+    world = World(bodies)
+    hits = np.concatenate([world.step(1.5 / steps) for _ in range(steps)])
+    expected = brute_force(bodies, 1.5)
+    assert hits[["a", "b"]].tolist() == [row[1:3] for row in expected]
+    np.testing.assert_allclose(hits["time"], [row[0] for row in expected], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(hits["normal"], [row[3] for row in expected], rtol=0, atol=1e-8)
+    np.testing.assert_allclose(hits["impulse"], [row[4] for row in expected], rtol=0, atol=1e-8)
+    places = [body.position for body in bodies]
+    np.testing.assert_allclose(world.positions, places, rtol=0, atol=1e-9)
+    assert deepest(all_bodies(world)) < 1e-9
+
+
+def test_the_giant_roams_and_the_grid_is_one() -> None:
+    """The comparison above is of use only if the broad phase does what it is for."""
+    world = World(crowd(1))
+    assert len(world.step(1.5)) > 10
+    setup, _ = world.memory()
+    assert setup.traits["roams"].sum() == 1
+    assert setup.header.columns * setup.header.rows > 8
+    assert setup.header.heads > 0
+    assert setup.header.boundless >= 4
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**9), st.sampled_from(["moved", "padded", "reversed"]))
+def test_neither_place_nor_grid_nor_numbering_matters(seed: int, change: str) -> None:
+    plain = World(crowd(seed))
+    bodies = crowd(seed)
+    number = len(bodies)
+    names = list(range(number))
+    if change == "moved":
+        for body in bodies:
+            body.position = np.add(body.position, (1e3, -1e3))
+    elif change == "padded":
+        bodies += [Body(AxisAlignedRectangle(1, 1), (x, -50)) for x in range(-300, 300, 5)]
+    else:
+        bodies.reverse()
+        names.reverse()
+    other = World(bodies)
+    expected, hits = plain.step(1.5), other.step(1.5)
+    pairs = [tuple(sorted((names[a], names[b]))) for a, b in hits[["a", "b"]].tolist()]
+    assert pairs == expected[["a", "b"]].tolist()
+    np.testing.assert_allclose(hits["time"], expected["time"], rtol=0, atol=1e-8)
+    places = other.positions[:number]
+    if change == "moved":
+        places = places - (1e3, -1e3)
+    np.testing.assert_allclose(places[names], plain.positions, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_ever_overlaps_and_nobody_leaves(seed: int) -> None:
+    world = World(crowd(seed, width=14, count=60))
+    total = 0
+    for _ in range(12):
+        total += len(world.step(0.5))
+        places = all_bodies(world)
+        del places[5]  # the kinematic body may squeeze others, and leaves through the wall
+        assert deepest(places) < 1e-9
+    assert total > 150
+    assert world.positions[14:].min() > -0.5
+    assert world.positions[14:].max() < 15
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_energy_and_momentum_are_kept(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bodies = scattered(rng, 60, 9.0, [])
+    for body in bodies:
+        body.restitution = 1.0
+        # Toward the middle, so that they meet.
+        body.velocity = body.velocity + 0.3 * (np.array((4.5, 4.5)) - body.position)
+    world = World(bodies)
+    masses = np.array([body.mass for body in bodies])
+    velocities = world.velocities
+    momentum, energy = masses @ velocities, masses @ (velocities**2).sum(axis=1)
+    moment = masses @ world.positions
+    hits = world.step(3.0)
+    assert len(hits) > 60
+    assert masses @ world.velocities == pytest.approx(momentum, abs=1e-12)
+    assert masses @ (world.velocities**2).sum(axis=1) == pytest.approx(energy, rel=1e-12)
+    # And so the centre of mass goes straight on.
+    assert masses @ world.positions == pytest.approx(moment + 3.0 * momentum, abs=1e-11)
+    assert deepest(all_bodies(world)) < 1e-9
+
+
+def test_energy_is_lost_as_restitution_says() -> None:
+    """At each hit (1 - e^2) of the energy of the approach, in the frame of the centre of mass."""
+    bodies = crowd(7, count=30)
+    del bodies[5]  # the kinematic body, which gives energy
+    world = World(bodies)
+    masses = np.array([body.mass or 0.0 for body in bodies])
+    before = masses @ (world.velocities**2).sum(axis=1) / 2
+    lost = 0.0
+    hits = world.step(4.0)
+    assert len(hits) > 60
+    for hit in hits:
+        a, b = bodies[hit["a"]], bodies[hit["b"]]
+        e = a.restitution * b.restitution
+        inverse = sum(1 / body.mass for body in (a, b) if body.mass)
+        # The impulse J = (1 + e) u / inverse, u the speed of the approach.
+        approach = -hit["impulse"] * inverse / (1 + e)
+        lost += (1 - e * e) * approach**2 / inverse / 2
+    after = masses @ (world.velocities**2).sum(axis=1) / 2
+    assert before - after == pytest.approx(lost, rel=1e-9)
+    assert lost > 0.1 * before
