@@ -7,7 +7,6 @@ from .clock_time import is_earlier, later
 from .compilation import kernel
 from .dispatch import impact_between, overlap_between
 from .prediction import place
-from .tolerances import NO_DEPTH
 from .touching_point import touching_point
 from .world_memory import (
     clock_of,
@@ -155,8 +154,7 @@ def leave_sensor(
     ahead, _, _ = impact_between(
         shapes_of(world), edges_of(world), here.collider, there.collider, dx, dy, vx, vy, math.inf
     )
-    rounding = NO_DEPTH * (abs(x) + abs(y) + abs(body_x) + abs(body_y))
-    if ahead < math.inf and ahead * (abs(vx) + abs(vy)) <= rounding:
+    if ahead < math.inf:
         # It touches and is about to enter: it has just been noticed.
         return count
     back, normal_x, normal_y = impact_between(
