@@ -29,7 +29,8 @@ class WorldBatch:
     Attributes:
         moving: int64 [m], the indices of the bodies that move.
         positions, velocities: float64 [num_worlds, m, 2], of these bodies. Views of the states:
-            what is written there counts from the next step on.
+            what is written there counts from the next step on. A body put elsewhere is in no
+            sensor yet.
     """
 
     def __init__(self, world: World, num_worlds: int, *, threads: int = 1) -> None:

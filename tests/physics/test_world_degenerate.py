@@ -280,7 +280,7 @@ def test_scales_do_not_matter(length: float, time: float) -> None:
     def scene(length: float, time: float) -> World:
         speed = length / time
         walls = [("+x", 0.0), ("-x", -6.0), ("+y", 0.0), ("-y", -4.0)]
-        world = World(Body(AxisAlignedHalfPlane(d, o * length)) for d, o in walls)  # type: ignore[arg-type]
+        world = World(Body(AxisAlignedHalfPlane(d, o * length)) for d, o in walls)
         world.add(Body(Rectangle(2 * length, length, 0.4), (3 * length, 2 * length)))
         rng = np.random.default_rng(1)
         for index in range(10):
