@@ -18,7 +18,9 @@ import numpy as np
 # What an event is (`Hit.kind`).
 HIT = 0  # the two bounced off each other
 BEGIN = 1  # a body entered a sensor
-END = 2  # it left the sensor
+# It left the sensor. In what direction is not known of one that was moved out: by relaxation, or
+# in a world that is not continuous.
+END = 2
 
 # What a body's plan is about (`Plan.kind`).
 NOTHING = 0  # to fly on to the end of the step
@@ -153,7 +155,11 @@ Hit = _record(
         ("time", np.float64),  # of the world
         ("a", np.int64),  # the bodies' indices, a < b
         ("b", np.int64),
-        ("normal", np.float64, (2,)),  # unit vector from a to b
+        (
+            "normal",
+            np.float64,
+            (2,),
+        ),  # unit vector from a to b; null where it is not known, see END
         ("point", np.float64, (2,)),
         ("impulse", np.float64),  # along the normal for a, the opposite for b; 0 with sensors
     ]
