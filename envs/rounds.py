@@ -9,7 +9,7 @@ A file begins with a name and its author's comment:
 
 ``.`` is no brick; ``w o c g r b m y`` are coloured ones of 50 to 120 points; ``S`` is silver (it
 needs several hits) and ``X`` gold (it never breaks). Missing rows at the bottom are empty. A level
-that cannot be cleared is refused.
+that cannot be cleared is refused. ``boss: yes`` among the headings brings the boss.
 """
 
 from collections.abc import Sequence
@@ -62,11 +62,19 @@ CAMPAIGN = (
 
 @dataclass(frozen=True)
 class Round:
-    """A level's name, its author's comment, and its bricks' kinds (uint8 [18, 11], top first)."""
+    """A level.
+
+    Attributes:
+        name: what players call it.
+        comment: its author's.
+        kinds: uint8 [18, 11], its bricks by their kinds, the top row first.
+        boss: whether the boss is in it, who must be beaten.
+    """
 
     name: str
     comment: str
     kinds: NDArray[np.uint8]
+    boss: bool = False
 
 
 def named_rounds() -> list[str]:
@@ -103,16 +111,18 @@ def load_round(name_or_path: str) -> Round:
 
 def parse_round(text: str, source: str) -> Round:
     """Parse a level file's text; ``source`` names it in errors (ValueError)."""
-    header = {"name": Path(source).stem, "comment": ""}
+    header = {"name": Path(source).stem, "comment": "", "boss": "no"}
     rows: list[list[int]] = []
     first_line = 0
     for number, line in enumerate(text.rstrip().splitlines(), 1):
         where = f"{source}, line {number}"
-        key, colon, value = line.partition(":")
+        key, colon, value = (part.strip() for part in line.partition(":"))
         if colon and not rows:
-            if key.strip() not in header:
-                raise ValueError(f"{where}: unknown heading {key.strip()!r}; known: name, comment")
-            header[key.strip()] = value.strip()
+            if key not in header:
+                raise ValueError(f"{where}: unknown heading {key!r}; known: {', '.join(header)}")
+            if key == "boss" and value not in ("yes", "no"):
+                raise ValueError(f"{where}: boss must be 'yes' or 'no'; got {value!r}")
+            header[key] = value
         elif line.strip() or rows:
             first_line = first_line or number
             rows.append(_parse_row(line.rstrip(), where))
@@ -121,14 +131,15 @@ def parse_round(text: str, source: str) -> Round:
     kinds = np.zeros((ROWS, COLUMNS), np.uint8)
     if rows:
         kinds[: len(rows)] = rows
+    boss = header["boss"] == "yes"
+    if not boss and not ((kinds != EMPTY) & (kinds != GOLD)).any():
+        raise ValueError(f"{source}: there is no breakable brick, so the level can't be cleared")
     _check_clearable(kinds, source, first_line)
-    return Round(header["name"], header["comment"], kinds)
+    return Round(header["name"], header["comment"], kinds, boss)
 
 
 def _check_clearable(kinds: NDArray[np.uint8], source: str, first_line: int) -> None:
-    """Refuse a level that no play can clear; ``first_line`` is that of its first row."""
-    if not ((kinds != EMPTY) & (kinds != GOLD)).any():
-        raise ValueError(f"{source}: there is no breakable brick, so the level can't be cleared")
+    """Refuse bricks that no ball can reach; ``first_line`` is that of the first row."""
     barred = unreachable_bricks(kinds)
     if not barred:
         return
