@@ -35,16 +35,20 @@ SYMMETRIES = {"none": NO_SYMMETRY, "mirror": MIRROR, "turn": TURN, "both": BOTH}
 
 # The places of a level's numbers in the noise of its seed.
 _MOTIF, _SYMMETRY, _ROWS, _DENSITY, _SILVER, _GOLD, _TOP, _PALETTE, _METAL, _GRAIN = range(10)
-_STYLE = 10
+_STYLE, _TINT = 10, 16
 _GRAIN_AT = 100
 _METAL_AT = 400
 _LAYERS_AT = 700
 
 # From seed to seed a recipe strays this far (half of it up, half down) from its difficulty's.
-_SPREAD = 0.3
+_SPREAD = 0.4
 # The parts of difficulty at which metal sets in.
 _SILVER_FROM = 0.15
 _GOLD_FROM = 0.35
+# While a level is drawn a cell holds a number from 1 to this; the two above it are a threshold that
+# none holds, and the mark of those that were chosen as gold.
+_HIGHEST = 253
+_GOLDEN = 255
 # The steps through the eight colours from layer to layer: those that pass all of them.
 _COLOUR_STEPS = 4
 
@@ -163,8 +167,14 @@ def _motif_of_cell(
 
 
 @kernel
+def _digit(part: float) -> int:
+    """Return a number from 1 to `_HIGHEST` for one from 0 to 1, to be kept in a cell."""
+    return 1 + int(part * (_HIGHEST - 1))
+
+
+@kernel
 def _draw_strengths(part: Any, key: Any, recipe: Recipe) -> None:
-    """Write how strong the motif is, with a grain, as 1 to 255 into the cells of the rows."""
+    """Write how strong the motif is, with a grain, as numbers into the cells of the rows."""
     style = _style(key)
     grain = noise(key, _GRAIN)
     grain = 0.05 + 0.2 * grain * grain
@@ -172,7 +182,7 @@ def _draw_strengths(part: Any, key: Any, recipe: Recipe) -> None:
         source = original(recipe.symmetry, recipe.rows, cell)
         strength, _ = _motif_of_cell(key, recipe, style, source)
         chance = noise(key, _GRAIN_AT + source)
-        part[cell] = 1 + int(254.0 * ((1.0 - grain) * strength + grain * chance))
+        part[cell] = _digit((1.0 - grain) * strength + grain * chance)
 
 
 @kernel
@@ -186,9 +196,9 @@ def _count_from(part: Any, threshold: int) -> int:
 
 
 @kernel
-def _threshold(part: Any, wanted: int) -> int:
-    """Return the least number from 1 to 256 that at most so many cells hold, or more than it."""
-    low, high = 1, 256
+def _least_threshold(part: Any, wanted: int) -> int:
+    """Return the least number that at most so many cells hold, or more than it, from 1 on."""
+    low, high = 1, _HIGHEST + 1
     while low < high:
         middle = (low + high) // 2
         if _count_from(part, middle) <= wanted:
@@ -199,14 +209,42 @@ def _threshold(part: Any, wanted: int) -> int:
 
 
 @kernel
+def _images(symmetry: int, rows: int, cell: int) -> int:
+    """Return how many cells show the same brick as an original does, itself included."""
+    row, column = cell // COLUMNS, cell % COLUMNS
+    if symmetry == NO_SYMMETRY:
+        return 1
+    if symmetry == TURN:
+        return 1 if 2 * cell == rows * COLUMNS - 1 else 2
+    images = 1 if 2 * column == COLUMNS - 1 else 2
+    return images if symmetry == MIRROR or 2 * row == rows - 1 else 2 * images
+
+
+@kernel
+def _choose(part: Any, recipe: Recipe, wanted: int, nearest: bool) -> int:
+    """Return a threshold that as many cells as wanted hold, or more than it.
+
+    A brick and its images come together, so that the number may be missed by some: the nearest
+    number is chosen, or else the nearest that is not more.
+    """
+    threshold = _least_threshold(part, wanted)
+    count = _count_from(part, threshold)
+    # Of those that are equal, and too many, the first ones are lifted.
+    for cell in range(part.shape[0]):
+        if part[cell] == threshold - 1 and original(recipe.symmetry, recipe.rows, cell) == cell:
+            images = _images(recipe.symmetry, recipe.rows, cell)
+            if 2 * (count + images) <= 2 * wanted + (images if nearest else 0):
+                count += images
+                for image in range(cell, part.shape[0]):
+                    if original(recipe.symmetry, recipe.rows, image) == cell:
+                        part[image] = threshold
+    return threshold
+
+
+@kernel
 def _lay_bricks(part: Any, key: Any, recipe: Recipe) -> int:
-    """Turn strengths into bricks (1 to 255: how fit for metal) and gaps (0); return the bricks."""
-    wanted = int(recipe.density * part.shape[0] + 0.5)
-    threshold = _threshold(part, wanted)
-    if threshold > 1:  # more bricks than wanted may be nearer to what is wanted
-        fewer, more = _count_from(part, threshold), _count_from(part, threshold - 1)
-        if more - wanted < wanted - fewer:
-            threshold -= 1
+    """Turn strengths into bricks (1 and up: how fit for metal) and gaps (0); return the bricks."""
+    threshold = _choose(part, recipe, int(recipe.density * part.shape[0] + 0.5), True)
     style = _style(key)
     manner = noise(key, _METAL)
     bricks = 0
@@ -217,7 +255,7 @@ def _lay_bricks(part: Any, key: Any, recipe: Recipe) -> int:
         bricks += 1
         source = original(recipe.symmetry, recipe.rows, cell)
         fitness = _fitness(key, recipe, style, manner, source)
-        part[cell] = 1 + int(254.0 * fitness)
+        part[cell] = _digit(fitness)
     return bricks
 
 
@@ -242,15 +280,18 @@ def _fitness(key: Any, recipe: Recipe, style: tuple[float, ...], manner: float, 
 @kernel
 def _colour_bricks(part: Any, key: Any, recipe: Recipe, bricks: int) -> None:
     """Turn the fittest bricks into gold, the next ones into silver, and colour the others."""
-    # Both are known before a kind is written, for the kinds are numbers like the fitness.
-    gold_from = _threshold(part, int(recipe.gold * bricks))
-    golden = _count_from(part, gold_from)
-    silver_from = _threshold(part, golden + int(recipe.silver * bricks + 0.5))
+    golden = 0
+    gold_from = _choose(part, recipe, int(recipe.gold * bricks), False)
+    for cell in range(part.shape[0]):
+        if part[cell] >= gold_from:
+            part[cell] = _GOLDEN
+            golden += 1
+    silver_from = _choose(part, recipe, golden + int(recipe.silver * bricks), False)
     style = _style(key)
     for cell in range(part.shape[0]):
         if part[cell] == EMPTY:
             continue
-        if part[cell] >= gold_from:
+        if part[cell] == _GOLDEN:
             part[cell] = GOLD
         elif part[cell] >= silver_from:
             part[cell] = SILVER
@@ -260,11 +301,17 @@ def _colour_bricks(part: Any, key: Any, recipe: Recipe, bricks: int) -> None:
 
 @kernel
 def _colour(key: Any, recipe: Recipe, style: tuple[float, ...], cell: int) -> int:
-    """Return the colour of a brick's layer."""
+    """Return the colour of a brick's layer, in some levels changing along or across it."""
     source = original(recipe.symmetry, recipe.rows, cell)
     _, layer = _motif_of_cell(key, recipe, style, source)
     choice = int(noise(key, _PALETTE) * COLOURS * _COLOUR_STEPS)
-    return 1 + (choice + layer * (2 * (choice // COLOURS) + 1)) % COLOURS
+    start, step = choice % COLOURS, 2 * (choice // COLOURS) + 1
+    tint = noise(key, _TINT)
+    if tint < 0.15:
+        layer += source // COLUMNS // 2
+    elif tint < 0.3:
+        layer += source % COLUMNS // 2
+    return 1 + (start + layer * step) % COLOURS
 
 
 @kernel
