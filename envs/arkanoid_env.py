@@ -1,5 +1,6 @@
 """`ArkanoidEnv`: one game as a Gymnasium environment. It is a batch of one world."""
 
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -16,7 +17,7 @@ from .interface import (
     check_render_mode,
     instance_metadata,
 )
-from .observation import LAYOUT, vector_space
+from .observation import observation_layout, vector_space
 from .state import INFO_FIELDS, Outcome
 
 if TYPE_CHECKING:
@@ -27,11 +28,12 @@ Observation = NDArray[np.float32]
 _REWARD = Outcome.names.index("reward")  # type: ignore[union-attr]
 _TERMINATED = Outcome.names.index("terminated")  # type: ignore[union-attr]
 _TRUNCATED = Outcome.names.index("truncated")  # type: ignore[union-attr]
-_INFO = [(key, Outcome.names.index(field)) for key, field in INFO_FIELDS.items()]  # type: ignore[union-attr]
+_INFO = [Outcome.names.index(field) for field in INFO_FIELDS.values()]  # type: ignore[union-attr]
+_info_values = itemgetter(*_INFO)
 _ALL = np.ones(1, np.bool_)
 
 
-class ArkanoidEnv(gym.Env[Observation, np.int64]):
+class ArkanoidEnv(gym.Env[Observation, Any]):
     """One game of Arkanoid.
 
     Args:
@@ -50,19 +52,25 @@ class ArkanoidEnv(gym.Env[Observation, np.int64]):
         self.config = Config.from_keywords(keywords)
         self.render_mode = render_mode
         self.metadata = instance_metadata(self.config)
-        self.observation_space = vector_space()
+        self.observation_space = vector_space(self.config)
         self.action_space = action_space(self.config)
-        self.layout = LAYOUT
+        self.layout = observation_layout(self.config)
         self._batch = Batch(1, self.config)
-        self._commands = COMMANDS[self.config.actions]
-        self._actions = len(self._commands)
+        self._commands = COMMANDS.get(self.config.actions)
         self._seeded = False
         self._window: Window | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode; a seed determines all that follows, no seed goes on as it was."""
+        """Begin an episode; a seed determines all that follows, no seed goes on as it was.
+
+        Args:
+            seed: of the game's random numbers.
+            options: how this and the following episodes begin: ``"level"`` (a name or path, or the
+                number of a round), ``"seed"`` (of a generated level; not the game's) and
+                ``"difficulty"``; see `curriculum`.
+        """
         super().reset(seed=seed)
         check_options(options)
         if seed is None and not self._seeded:
@@ -70,16 +78,19 @@ class ArkanoidEnv(gym.Env[Observation, np.int64]):
         if seed is not None:
             self._batch.seed(0, seed)
             self._seeded = True
-        self._batch.reset(_ALL)
+        self._batch.reset(_ALL, options)
         self._show()
         return self._batch.observations[0].copy(), self._info(self._batch.outcomes[0].item())
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one decision."""
         batch = self._batch
-        if not 0 <= action < self._actions:
+        if self._commands is None:
+            batch.command(np.asarray(action)[np.newaxis])
+        elif 0 <= action < len(self._commands):
+            batch.commands[0] = self._commands[action]
+        else:
             raise ValueError(f"action {action!r} is not in {self.action_space}")
-        batch.commands[0] = self._commands[action]
         batch.step()
         outcome = batch.outcomes[0].item()
         if self.render_mode == "human":
@@ -109,13 +120,13 @@ class ArkanoidEnv(gym.Env[Observation, np.int64]):
             self._window = None
 
     def _info(self, outcome: tuple[Any, ...]) -> dict[str, Any]:
-        return {key: outcome[index] for key, index in _INFO}
+        return dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
 
     def _frame(self) -> NDArray[np.uint8]:
         # Imported on demand: playing without pictures needs none of the drawing kernels.
         from .render import draw_world
 
-        return draw_world(self._batch.worlds, self._batch.rules, self._batch.levels, 0)
+        return draw_world(self._batch.worlds, self._batch.rules, 0)
 
     def _show(self) -> None:
         if self.render_mode == "human":

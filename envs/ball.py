@@ -14,6 +14,8 @@ from .rules import (
     LOOP_TURN_MAX,
     LOOP_TURN_MIN,
     PHYSICAL,
+    SPEED_STAGE_HITS,
+    SPEED_STAGE_MAX,
     ZONE_ANGLES,
     ZONES6,
 )
@@ -50,6 +52,15 @@ def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
     speed = ball_speed(world, rules)
     world.ball_vx[ball] = x * speed
     world.ball_vy[ball] = y * speed
+
+
+@kernel
+def count_hit(world: Any) -> None:
+    """Count a ball's hit on a brick: after some of them balls fly faster."""
+    world.hits_since_serve += 1
+    for index in range(len(SPEED_STAGE_HITS)):
+        if world.hits_since_serve == SPEED_STAGE_HITS[index]:
+            world.speed_stage = min(world.speed_stage + 1, SPEED_STAGE_MAX)
 
 
 @kernel
@@ -93,7 +104,7 @@ def deflect_ball(
         )
         set_course(world, rules, ball, x + world.paddle_vx, y)
     else:
-        x, y = _deflection(rules, world.ball_x[ball] - paddle_x, world.ball_vx[ball])
+        x, y = deflection(world, rules, world.ball_x[ball] - paddle_x, world.ball_vx[ball])
         set_course(world, rules, ball, x, y)
     if not _recedes(world, ball, normal_x, normal_y):
         set_course(world, rules, ball, normal_x, normal_y)
@@ -101,13 +112,13 @@ def deflect_ball(
 
 
 @kernel
-def _deflection(rules: Any, offset: float, velocity_x: float) -> tuple[float, float]:
+def deflection(world: Any, rules: Any, offset: float, velocity_x: float) -> tuple[float, float]:
     """Return the unit direction in which a ball leaves the paddle's upper side, by where it lands.
 
     Args:
         offset: of the ball from the paddle's middle; velocity_x: with which the ball came.
     """
-    u = max(-1.0, min(1.0, offset / rules.paddle_half))
+    u = max(-1.0, min(1.0, offset / world.paddle_half))
     if rules.deflection == ZONES6:
         degrees = ZONE_ANGLES[min(int((1.0 - u) * 3.0), 5)]
         side = 1.0 if degrees > 0.0 else -1.0

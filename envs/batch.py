@@ -11,17 +11,19 @@ from numpy.typing import NDArray
 
 from ..physics.compilation import kernel
 from .config import Config
-from .game import begin_episode, decide
-from .observation import LENGTH, observe
+from .curriculum import choose_starts, forget_starts
+from .episode import begin_episode
+from .game import clear_events, decide
+from .level_plan import plan_levels
+from .observation import observe, vector_space
 from .random import seed_state
-from .rounds import level_table
-from .rules import make_rules
+from .rulebook import make_rules
 from .state import Outcome, World
 
+# Velocity in [-1, 1] and fire of the discrete actions, float64 [actions, 2].
 _MOVES = [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0]]
 _MOVES_WITH_FIRE = [[move, 1.0] for move, _ in _MOVES]
 
-# What each discrete action commands: velocity in [-1, 1] and fire, float64 [actions, 2].
 COMMANDS = {
     "discrete3": np.array(_MOVES),
     "discrete6": np.array(_MOVES + _MOVES_WITH_FIRE),
@@ -56,6 +58,7 @@ def _reset_world(
     """Begin a new episode in one world."""
     outcome = outcomes[index]
     begin_episode(worlds[index], rules[0], levels)
+    clear_events(worlds[index])
     outcome.reward = 0.0
     outcome.hits = 0
     outcome.terminated = False
@@ -72,6 +75,12 @@ def _report(world: Any, outcome: Any) -> None:
     outcome.lives = world.lives
     outcome.round_number = world.round_number
     outcome.bricks_left = world.bricks_left
+    outcome.bricks_broken = world.bricks_broken
+    outcome.capsules_caught = world.capsules_caught
+    outcome.enemies_destroyed = world.enemies_destroyed
+    outcome.lives_lost = world.lives_lost
+    outcome.lives_gained = world.lives_gained
+    outcome.rounds_cleared = world.rounds_cleared
 
 
 @kernel
@@ -129,6 +138,23 @@ def decode_actions(actions: Any, table: Any, commands: Any) -> int:
     return -1
 
 
+@kernel
+def decode_velocities(actions: Any, commands: Any) -> int:
+    """Write what box actions (float64 [n, 2]) command; return the first illegal one's world or -1.
+
+    Args:
+        commands: float64 [n, 2].
+    """
+    for index in range(actions.shape[0]):
+        move, fire = actions[index, 0], actions[index, 1]
+        # In this order a NaN is illegal.
+        if not (-1.0 <= move <= 1.0 and -1.0 <= fire <= 1.0):
+            return index
+        commands[index, 0] = move
+        commands[index, 1] = 1.0 if fire > 0.0 else 0.0
+    return -1
+
+
 class Batch:
     """Worlds that are played together, with the arrays that their steps read and write.
 
@@ -139,7 +165,7 @@ class Batch:
 
     Attributes:
         worlds: the state, `World` records [n].
-        rules: `Rules` [1]; levels: `Level` records.
+        plan: the levels; rules: `Rules` [1]; levels: `Level` records.
         commands: float64 [n, 2], to be filled before `step`.
         outcomes, finals: `Outcome` records [n].
         observations, final_observations: float32 [n, k].
@@ -154,15 +180,18 @@ class Batch:
     ) -> None:
         self.config = config
         self.autoreset = autoreset
-        self.rules = make_rules(config)
-        self.levels = level_table(config.levels)
+        self.plan = plan_levels(config)
+        self.rules = make_rules(config, self.plan)
+        self.levels = self.plan.table
         self.worlds = np.zeros(num_worlds, World)
+        forget_starts(self.worlds)
         self.commands: NDArray[np.float64] = np.zeros((num_worlds, 2))
         self.outcomes = np.zeros(num_worlds, Outcome)
         self.finals = np.zeros(num_worlds, Outcome)
-        self.observations: NDArray[np.float32] = np.zeros((num_worlds, LENGTH), np.float32)
+        (length,) = vector_space(config).shape or ()
+        self.observations: NDArray[np.float32] = np.zeros((num_worlds, length), np.float32)
         self.final_observations = np.zeros_like(self.observations)
-        self._table = COMMANDS[config.actions]
+        self._table = COMMANDS.get(config.actions)
         self._chunks = self._split(threads)
         self._pool: ThreadPoolExecutor | None = None
 
@@ -176,12 +205,15 @@ class Batch:
         self.worlds["random"][index] = seed_state(seed)
 
     def command(self, actions: Any) -> None:
-        """Take discrete actions, integers [n], as the worlds' commands.
+        """Take actions as the worlds' commands: integers [n], or velocities and fire, [n, 2].
 
         Raises:
             ValueError: their number or one of them is illegal.
         """
         array = np.asarray(actions)
+        if self._table is None:
+            self._command_velocities(array)
+            return
         if array.shape != (self.num_worlds,) or array.dtype.kind not in "iu":
             raise ValueError(
                 f"actions must be {self.num_worlds} integers, one for each world; got "
@@ -193,9 +225,31 @@ class Batch:
                 f"action {array[wrong]} of world {wrong} is not in Discrete({len(self._table)})"
             )
 
-    def reset(self, mask: NDArray[np.bool_]) -> None:
-        """Begin a new episode in the worlds of a mask, bool [n]."""
+    def _command_velocities(self, array: NDArray[Any]) -> None:
+        if array.shape != (self.num_worlds, 2) or array.dtype.kind not in "iuf":
+            raise ValueError(
+                f"actions must be numbers of shape ({self.num_worlds}, 2), velocity and fire of "
+                f"each world; got {array.dtype} of shape {array.shape}"
+            )
+        wrong = decode_velocities(array.astype(np.float64), self.commands)
+        if wrong >= 0:
+            raise ValueError(
+                f"action {array[wrong].tolist()} of world {wrong} is not within -1 and 1"
+            )
+
+    def reset(self, mask: NDArray[np.bool_], options: dict[str, Any] | None = None) -> None:
+        """Begin a new episode in the worlds of a mask, bool [n]; options: see `curriculum`."""
+        if options:
+            choose_starts(self.worlds, mask, options, self.config, self.plan)
         reset_worlds(self.worlds, self.rules, self.levels, mask, self.outcomes, self.observations)
+
+    def restore(self, worlds: Any) -> None:
+        """Go on from a snapshot, a copy of `worlds`; the observations follow with the next step."""
+        self.worlds[:] = worlds
+        # What is written only when it changes must be written anew.
+        self.worlds["lattice_changed"] = 1
+        self.worlds["capsules_shown"] = 1
+        self.worlds["enemies_shown"] = 1
 
     def step(self) -> None:
         """Play one decision, as `commands` say, in each world."""

@@ -1,6 +1,5 @@
 """Every knob of the environment, validated: what `gym.make`'s keywords become."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from difflib import get_close_matches
@@ -8,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from .rules import DEFLECTIONS, REWARDS
+from .checks import check_choice, check_integer, check_number
+from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
 
-ACTIONS = ("discrete6", "discrete3")
+ACTIONS = ("discrete6", "discrete3", "box")
 OBSERVATIONS = ("vector",)
 
 
@@ -20,14 +20,23 @@ class Config:
 
     Args:
         observation: ``"vector"``.
-        actions: ``"discrete6"``, (no-op, left, right) × (fire), or ``"discrete3"``, without fire.
+        actions: ``"discrete6"``, (no-op, left, right) × (fire); ``"discrete3"``, without fire (balls
+            leave the paddle and the laser shoots by themselves); or ``"box"``, float32 [2]:
+            velocity in [-1, 1] as a part of the paddle's speed, and fire if the second is positive.
         reward: ``"progress"`` (each needed hit pays 1 / needed hits of the round, clearing pays 1),
             ``"score"`` (points / 1000) or ``"sparse"`` (1 for clearing a round).
         frame_skip: ticks a decision lasts; the reward is summed.
         sticky_action: probability that a decision repeats the one before.
         lives: balls one may lose before the episode terminates.
         life_penalty: what the loss of a life costs.
-        levels: names of packaged rounds or paths of level files, played in turn.
+        levels: ``"campaign"`` (the named rounds, the boss's, then generated ones without end),
+            ``"train"`` or ``"test"`` (generated from the seeds for that), ``"seeds:100-200"`` or a
+            `range` (generated from these seeds); or a name of a packaged round, the path of a level
+            file, or a sequence of such, played in turn again and again.
+        difficulty: of generated rounds, in [0, 1]; None lets it rise from round to round.
+        capsules: whether there are any.
+        capsule_rate: the part of the coloured bricks that hide one.
+        enemies: whether there are any, and the boss.
         speed: factor on the ball's speed.
         paddle: factor on the paddle's width.
         deflection: ``"angle"`` (by where on the paddle the ball lands), ``"zones6"`` (six fixed
@@ -46,25 +55,34 @@ class Config:
     sticky_action: float = 0.0
     lives: int = 3
     life_penalty: float = 0.0
-    levels: Sequence[str] = ("ripple",)
+    levels: str | range | Sequence[str] = "campaign"
+    difficulty: float | None = None
+    capsules: bool = True
+    capsule_rate: float = CAPSULE_RATE
+    enemies: bool = True
     speed: float = 1.0
     paddle: float = 1.0
     deflection: str = "angle"
     max_decisions: int = 27_000
 
     def __post_init__(self) -> None:
-        _choice("observation", self.observation, OBSERVATIONS)
-        _choice("actions", self.actions, ACTIONS)
-        _choice("reward", self.reward, tuple(REWARDS))
-        _choice("deflection", self.deflection, tuple(DEFLECTIONS))
-        _integer("frame_skip", self.frame_skip, 1, 1000)
-        _integer("lives", self.lives, 1, 1000)
-        _integer("max_decisions", self.max_decisions, 1, 10**12)
-        _number("sticky_action", self.sticky_action, 0.0, 1.0)
-        _number("life_penalty", self.life_penalty, 0.0, 1e9)
-        _number("speed", self.speed, 1e-3, 1e6)
-        _number("paddle", self.paddle, 0.25, 5.0)
-        _strings("levels", self.levels)
+        check_choice("observation", self.observation, OBSERVATIONS)
+        check_choice("actions", self.actions, ACTIONS)
+        check_choice("reward", self.reward, tuple(REWARDS))
+        check_choice("deflection", self.deflection, tuple(DEFLECTIONS))
+        check_integer("frame_skip", self.frame_skip, 1, 1000)
+        check_integer("lives", self.lives, 1, 1000)
+        check_integer("max_decisions", self.max_decisions, 1, 10**12)
+        check_number("sticky_action", self.sticky_action, 0.0, 1.0)
+        check_number("life_penalty", self.life_penalty, 0.0, 1e9)
+        check_number("speed", self.speed, 1e-3, 1e6)
+        check_number("paddle", self.paddle, 0.25, 5.0)
+        if self.difficulty is not None:
+            check_number("difficulty", self.difficulty, 0.0, 1.0)
+        _boolean("capsules", self.capsules)
+        check_number("capsule_rate", self.capsule_rate, 0.0, 1.0)
+        _boolean("enemies", self.enemies)
+        _levels(self.levels)
 
     @classmethod
     def from_keywords(cls, keywords: dict[str, Any]) -> "Config":
@@ -78,28 +96,19 @@ class Config:
         return cls(**keywords)
 
 
-def _choice(name: str, value: object, legal: tuple[str, ...]) -> None:
-    if value not in legal:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, legal))}; got {value!r}")
+def _boolean(name: str, value: object) -> None:
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False; got {value!r}")
 
 
-def _integer(name: str, value: object, low: int, high: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{name} must be an integer; got {value!r}")
-    if not low <= value <= high:
-        raise ValueError(f"{name} must be between {low} and {high}; got {value!r}")
-
-
-def _number(name: str, value: object, low: float, high: float) -> None:
-    if isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer):
-        raise TypeError(f"{name} must be a number; got {value!r}")
-    if not (math.isfinite(value) and low <= value <= high):
-        raise ValueError(f"{name} must be between {low:g} and {high:g}; got {value!r}")
-
-
-def _strings(name: str, value: object) -> None:
+def _levels(value: object) -> None:
+    if isinstance(value, range) or (isinstance(value, str) and value):
+        return
     if isinstance(value, str) or not isinstance(value, Sequence) or not value:
-        raise TypeError(f"{name} must be a non-empty sequence of names or paths; got {value!r}")
+        raise TypeError(
+            "levels must be 'campaign', 'train', 'test', 'seeds:100-200', a range of seeds, a name "
+            f"or path of a level, or a non-empty sequence of such names; got {value!r}"
+        )
     for item in value:
         if not isinstance(item, str):
-            raise TypeError(f"{name} must hold names or paths as text; got {item!r}")
+            raise TypeError(f"levels must hold names or paths as text; got {item!r}")

@@ -32,7 +32,6 @@ from .rules import (
     BALL_RADIUS,
     COLUMNS,
     MAX_BALLS,
-    PADDLE_SHAPE,
     PADDLE_Y,
     ROWS,
     SILVER,
@@ -65,7 +64,6 @@ SCORE_WIDTH = 4.4  # the score grows smaller to stay within it
 def draw_world(
     worlds: Any,
     rules: Any,
-    levels: Any,
     index: int,
     height: int = DEFAULT_HEIGHT,
     width: int | None = None,
@@ -76,7 +74,7 @@ def draw_world(
 
     Args:
         worlds: `World` records [n].
-        rules: `Rules` [1]; levels: `Level` records.
+        rules: `Rules` [1].
         index: of the world.
         height: in pixels.
         width: in pixels; None gives the field, its walls and the score line just enough.
@@ -91,7 +89,7 @@ def draw_world(
     shared = scenery(int(height), int(width))
     frame = shared.background.copy()
     lines = frame.reshape(frame.shape[0], -1)
-    draw_play(frame, lines, shared.view, PALETTE, shared.looks, worlds, rules, levels, int(index))
+    draw_play(frame, lines, shared.view, PALETTE, shared.looks, worlds, rules, int(index))
     return frame
 
 
@@ -114,7 +112,7 @@ def brick_look(kind: int, hits_left: int, round_number: int) -> int:
 
 
 @kernel
-def draw_bricks(lines: Any, view: Any, looks: Any, world: Any, level: Any, channels: int) -> None:
+def draw_bricks(lines: Any, view: Any, looks: Any, world: Any, channels: int) -> None:
     """Draw the bricks that are there, by copying their cells' pixels from a look's picture.
 
     Args:
@@ -126,7 +124,7 @@ def draw_bricks(lines: Any, view: Any, looks: Any, world: Any, level: Any, chann
             cell = row * COLUMNS + column
             hits_left = int(world.brick_hits[cell])
             if hits_left > 0:
-                look = brick_look(int(level.kind[cell]), hits_left, world.round_number)
+                look = brick_look(int(world.kind[cell]), hits_left, world.round_number)
                 start, end = view.columns[column] * channels, view.columns[column + 1] * channels
                 for y in range(view.rows[row], view.rows[row + 1]):
                     line = lines[y, start:end]
@@ -208,15 +206,14 @@ def draw_play(
     looks: Any,
     worlds: Any,
     rules: Any,
-    levels: Any,
     index: int,
 ) -> None:
     """Draw what changes of one world over the background; lines: the same bytes, see above."""
     where = view[0]
     world = worlds[index]
-    shape = rules[0].shapes[PADDLE_SHAPE]
+    shape = rules[0].shapes[world.paddle_shape]
     scale = where.scale
-    draw_bricks(lines, where, looks, world, levels[world.level], image.shape[2])
+    draw_bricks(lines, where, looks, world, image.shape[2])
     draw_paddle(
         image,
         palette,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .batch import Autoreset, Batch
 from .config import Config
 from .interface import action_space, check_options, check_render_mode, instance_metadata
-from .observation import LAYOUT, vector_space
+from .observation import observation_layout, vector_space
 from .state import INFO_FIELDS
 
 Observations = NDArray[np.float32]
@@ -62,11 +62,11 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         self.copy = copy
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = instance_metadata(self.config) | {"autoreset_mode": self.autoreset_mode}
-        self.single_observation_space = vector_space()
+        self.single_observation_space = vector_space(self.config)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.single_action_space = action_space(self.config)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self.layout = LAYOUT
+        self.layout = observation_layout(self.config)
         self._mode = _MODES[self.autoreset_mode]
         self._batch = Batch(num_envs, self.config, self._mode, threads)
         self._seeded = np.zeros(num_envs, np.bool_)
@@ -81,7 +81,9 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """Begin an episode in every world, or in those of ``options["reset_mask"]`` (bool [n]).
 
         An int seeds world ``i`` with ``seed + i``; a sequence gives each world's own seed; None
-        goes on with each world's generator.
+        goes on with each world's generator. The options ``"level"``, ``"seed"`` and
+        ``"difficulty"`` say how this and the following episodes of those worlds begin, see
+        `curriculum`.
         """
         super().reset(seed=seed if isinstance(seed, int) else None)
         check_options(options)
@@ -89,7 +91,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         if options and "reset_mask" in options:
             mask = self._reset_mask(options["reset_mask"])
         self._seed(seed, mask)
-        self._batch.reset(mask)
+        self._batch.reset(mask, options)
         return self._observations(), self._infos(self._batch.outcomes, mask)
 
     def step(
@@ -104,7 +106,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """Play one decision in every world.
 
         Args:
-            actions: integers [n].
+            actions: integers [n], or velocity and fire, [n, 2].
         """
         batch = self._batch
         if self._mode is Autoreset.DISABLED and batch.worlds["done"].any():
@@ -133,7 +135,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         batch = self._batch
         return tuple(
-            draw_world(batch.worlds, batch.rules, batch.levels, index)
+            draw_world(batch.worlds, batch.rules, index)
             for index in range(self.num_envs)
         )
 
@@ -176,9 +178,12 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
     def _infos(self, outcomes: Any, mask: NDArray[np.bool_]) -> dict[str, Any]:
         """Return each outcome's field and the mask of the worlds that have it."""
         infos: dict[str, Any] = {}
+        everywhere = mask.all()
+        owners = mask.copy()
         for key, field in INFO_FIELDS.items():
-            infos[key] = np.where(mask, outcomes[field], 0)
-            infos[f"_{key}"] = mask.copy()
+            values = outcomes[field]
+            infos[key] = values.copy() if everywhere else np.where(mask, values, 0)
+            infos[f"_{key}"] = owners
         return infos
 
     def _final_infos(self, done: NDArray[np.bool_]) -> dict[str, Any]:
