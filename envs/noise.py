@@ -36,7 +36,8 @@ def noise_key(seed: int) -> np.uint64:
     """Return the key of a seed in [0, 2^63): different seeds have different keys."""
     whole = np.uint64(seed)
     low = _mix(((whole & _LOW) + _GOLDEN) & _LOW)
-    high = _mix(low ^ (whole >> _HALF))
+    # Twice, for `noise` mixes the lower half, too, and at place 0 would cancel the same number.
+    high = _mix((_mix(low ^ (whole >> _HALF)) + _GOLDEN) & _LOW)
     return (high << _HALF) | low
 
 
