@@ -268,8 +268,9 @@ def _fitness(key: Any, recipe: Recipe, style: tuple[float, ...], manner: float, 
         fitness = noise(key, _LAYERS_AT + layer)
     elif manner < 0.55:  # the layers' middles
         fitness = strength
-    elif manner < 0.7:  # the lowest bricks
-        fitness = (cell // COLUMNS + 0.5) / recipe.rows
+    elif manner < 0.7:  # the lowest bricks, in heaps: a whole row of gold is no fun
+        row, column = cell // COLUMNS, cell % COLUMNS
+        fitness = 0.7 * row / recipe.rows + 0.3 * zigzag((column + 1.0) / 4.0)
     elif manner < 0.85:  # columns
         fitness = zigzag((cell % COLUMNS + 1.0) * (1.0 + int(6.0 * style[5])) / 12.0)
     else:  # anywhere

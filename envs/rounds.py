@@ -12,7 +12,6 @@ needs several hits) and ``X`` gold (it never breaks). Missing rows at the bottom
 that cannot be cleared is refused. ``boss: yes`` among the headings brings the boss.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from importlib import resources
@@ -40,7 +39,6 @@ from .generator import (
 )
 from .motifs import MOTIFS
 from .rules import BRICK_LETTERS, CELLS, COLUMNS, EMPTY, GOLD, ROWS
-from .state import Level
 
 # The named rounds in the order of the campaign, the boss's last.
 CAMPAIGN = (
@@ -234,11 +232,3 @@ def _describe(recipe: Recipe) -> str:
         f"Generated: {recipe.rows} rows, density {recipe.density:.2f}, symmetry {symmetry}, "
         f"silver {recipe.silver:.2f}, gold {recipe.gold:.2f}."
     )
-
-
-def level_table(names: Sequence[str]) -> Any:
-    """Return the levels of a batch, in order, as an array of `Level` records."""
-    table = np.zeros(len(names), Level)
-    for record, name in zip(table, names, strict=True):
-        record["kind"] = load_round(name).kinds.ravel()
-    return table
