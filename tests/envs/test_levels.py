@@ -1,7 +1,10 @@
 """Level files: what is read, and what is refused with its place; the named rounds."""
 
 import re
+import runpy
+from pathlib import Path
 
+import imageio.v3 as iio
 import numpy as np
 import pytest
 from arkanoid.envs.clearability import mark_reachable, unreachable, unreachable_bricks
@@ -17,6 +20,7 @@ from arkanoid.envs.rules import GOLD, LATTICE_TOP, SILVER
 from numpy.typing import NDArray
 from scipy import ndimage
 
+ROOT = Path(__file__).resolve().parents[2]
 GOOD = "name: Tiny\ncomment: two bricks\n\n.w.......X.\n"
 CAGE = "name: Cage\n\n..XXX......\n..XwX......\n..XXX......\n"
 
@@ -191,3 +195,24 @@ def test_a_boss_needs_no_bricks():
     assert parse_round("boss: yes\n", "lone.txt").boss
     with pytest.raises(ValueError, match="no breakable brick"):
         parse_round("boss: no\n", "lone.txt")
+
+
+def test_the_documentation_shows_all_of_them(tmp_path):
+    script = runpy.run_path(str(ROOT / "docs" / "pictures" / "levels.py"))
+    script["main"](tmp_path)
+    for name, pictures in ((script["ROUNDS"], 13), (script["GENERATED"], 5 * 6)):
+        drawn = iio.imread(tmp_path / name)
+        assert drawn.shape == iio.imread(ROOT / "docs" / "pictures" / name).shape
+        height, width = 206, 192
+        tiles = drawn.reshape(drawn.shape[0] // height, height, drawn.shape[1] // width, width, 3)
+        tiles = tiles.swapaxes(1, 2).reshape(-1, height * width * 3)
+        assert len(np.unique(tiles[tiles.any(axis=1)], axis=0)) == pictures
+    text = (ROOT / "docs" / "levels.md").read_text("utf-8")
+    for name, item in zip(CAMPAIGN, campaign_rounds(), strict=True):
+        assert f"| {item.name} | `{name}` |" in text
+
+
+def test_the_documentations_level_can_be_played():
+    text = (ROOT / "docs" / "levels.md").read_text("utf-8")
+    example = text.split("```text\n")[1].split("```")[0]
+    assert parse_round(example, "gate.txt").name == "Gate"
