@@ -316,15 +316,21 @@ def _colour(key: Any, recipe: Recipe, style: tuple[float, ...], cell: int) -> in
 
 
 @kernel
+def _recolour(part: Any, key: Any, recipe: Recipe, cell: int) -> None:
+    """Turn a golden brick and its images into coloured ones."""
+    style = _style(key)
+    first = original(recipe.symmetry, recipe.rows, cell)
+    for image in range(part.shape[0]):
+        if original(recipe.symmetry, recipe.rows, image) == first:
+            part[image] = _colour(key, recipe, style, image)
+
+
+@kernel
 def _open_gold(kinds: Any, part: Any, key: Any, recipe: Recipe) -> None:
     """Colour as many golden bricks as bar the only ways to others, one and its images at a time."""
     mark_reachable(kinds)
-    style = _style(key)
     while count_unreached(kinds) > 0:
-        bar = original(recipe.symmetry, recipe.rows, _bar(kinds, part, key, recipe))
-        for cell in range(part.shape[0]):
-            if part[cell] == GOLD and original(recipe.symmetry, recipe.rows, cell) == bar:
-                part[cell] = _colour(key, recipe, style, cell)
+        _recolour(part, key, recipe, _bar(kinds, part, key, recipe))
         mark_reachable(kinds)
     clear_marks(kinds)
 
