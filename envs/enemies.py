@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from ..physics.approach import approach_between, will_touch
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from ..physics.dispatch import overlap_between
 from ..physics.response import reflect
 from ..physics.shape_lattice import sweep_shape_lattice
@@ -205,7 +205,7 @@ def _free_way(
     return min(1.0, max(0.0, time - ahead)), normal_x, normal_y
 
 
-@kernel
+@inlined
 def _first_obstacle(
     world: Any, rules: Any, enemy: int, vx: float, vy: float, duration: float
 ) -> tuple[float, float, float]:

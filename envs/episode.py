@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from .beams import remove_beams
 from .boss import remove_shards
 from .bricks import lay_bricks
@@ -23,7 +23,7 @@ from .serve import lay_ball
 from .state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED
 
 
-@kernel
+@inlined
 def begin_episode(world: Any, rules: Any, levels: Any) -> None:
     """Start a new game; of the world's past only its generator goes on, and how it shall begin."""
     world.done = 0

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from ..physics.approach import approach_between
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from ..physics.disc_half_plane import sweep_disc_half_plane
 from ..physics.dispatch import contact_between, may_touch
 from ..physics.lattice import sweep_disc_lattice
@@ -39,7 +39,7 @@ BOSS = 6
 FREEING_ROUNDS = 64
 
 
-@kernel
+@inlined
 def _meet_side_wall(x: float, vx: float, duration: float) -> tuple[float, float]:
     """Return (time, normal_x) of a ball's impact on the side wall that it flies towards."""
     if vx == 0.0:
@@ -52,7 +52,7 @@ def _meet_side_wall(x: float, vx: float, duration: float) -> tuple[float, float]
     return time, normal_x
 
 
-@kernel
+@inlined
 def _meet_paddle(
     world: Any, rules: Any, ball: int, paddle_x: float, duration: float
 ) -> tuple[float, float, float]:
@@ -121,7 +121,7 @@ def _first_impact(
     return time, normal_x, normal_y, what, index
 
 
-@kernel
+@inlined
 def fly_balls(world: Any, rules: Any) -> None:
     """Move the flying balls by one tick; nothing moves any more once the round is cleared."""
     for ball in range(MAX_BALLS):
@@ -158,7 +158,7 @@ def fly_ball(world: Any, rules: Any, ball: int) -> None:
     world.capped += 1
 
 
-@kernel
+@inlined
 def _strike(world: Any, rules: Any, what: int, index: int) -> bool:
     """Do to what a ball has met (not the paddle) what that does; return whether it is damage."""
     if what == BRICK:
@@ -174,7 +174,7 @@ def _strike(world: Any, rules: Any, what: int, index: int) -> bool:
     return False
 
 
-@kernel
+@inlined
 def free_balls(world: Any, rules: Any) -> None:
     """Relax the flying balls that the paddle was moved into."""
     for ball in range(MAX_BALLS):
@@ -182,7 +182,7 @@ def free_balls(world: Any, rules: Any) -> None:
             free_ball(world, rules, ball)
 
 
-@kernel
+@inlined
 def free_ball(world: Any, rules: Any, ball: int) -> None:
     """Relax a ball that overlaps the paddle, for the paddle was moved into it."""
     for _ in range(FREEING_ROUNDS):

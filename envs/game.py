@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from .beams import fly_beams, shoot
 from .boss import fly_shards, throw_shards
 from .capsules import fall_capsule
@@ -22,7 +22,7 @@ from .serve import balls_in_play, carry_balls, release_balls, remove_ball
 from .state import DECISION_LIMIT, FLYING, IDLE, NOT_TRUNCATED
 
 
-@kernel
+@inlined
 def decide(world: Any, rules: Any, levels: Any, move: float, fire: float, outcome: Any) -> None:
     """Play one decision of `frame_skip` ticks, fewer if the episode ends, into the outcome.
 
@@ -60,7 +60,7 @@ def clear_events(world: Any) -> None:
     world.rounds_cleared = 0
 
 
-@kernel
+@inlined
 def _reward_tick(world: Any, rules: Any, levels: Any, outcome: Any) -> None:
     """Play one tick, and add what it pays to the outcome."""
     score, lost, hits = world.score, world.lives_lost, world.hits_left
@@ -84,7 +84,7 @@ def _reward_tick(world: Any, rules: Any, levels: Any, outcome: Any) -> None:
         begin_round(world, rules, levels)
 
 
-@kernel
+@inlined
 def _tick(world: Any, rules: Any) -> None:
     """Play one tick of 1/60 s; it ends early when the round is cleared."""
     world.idle += 1
@@ -111,7 +111,7 @@ def _tick(world: Any, rules: Any) -> None:
         lose_life(world, rules)
 
 
-@kernel
+@inlined
 def _act_enemies(world: Any, rules: Any) -> None:
     """Let enemies come in and choose their ways; where the boss is, he alone acts."""
     if world.boss_hits > 0:
@@ -122,7 +122,7 @@ def _act_enemies(world: Any, rules: Any) -> None:
             steer_enemies(world, rules)
 
 
-@kernel
+@inlined
 def _lose_balls(world: Any) -> bool:
     """Take away the balls below the field; return whether the last one is lost."""
     lost = 0

@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from .rules import (
     BEAM_TICKS,
     BOSS_HITS,
@@ -196,7 +196,7 @@ def observe(world: Any, rules: Any, row: Any) -> None:
         _observe_enemies(world, row)
 
 
-@kernel
+@inlined
 def _observe_capsules(world: Any, row: Any) -> None:
     """Write powers, the falling capsule and beams, if there are any or were."""
     shown = 1 if world.power + world.capsule + world.beams + world.exit_open > 0 else 0
@@ -219,7 +219,7 @@ def _observe_capsules(world: Any, row: Any) -> None:
         row[_BEAM_Y + beam] = _up(world.beam_y[beam]) if flies else 0.0
 
 
-@kernel
+@inlined
 def _observe_enemies(world: Any, row: Any) -> None:
     """Write the time of the next enemy; enemies, and the boss with its shards if there are any."""
     waits = world.boss_hits == 0

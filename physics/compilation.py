@@ -59,10 +59,40 @@ def kernel(function: F) -> F:
     if numba.config.DISABLE_JIT:
         return function
     compiled: F = numba.njit(function, nogil=True, error_model="numpy")
+    _compile_once_for_literals(compiled)
     folder = cache_folder(Path(function.__code__.co_filename))
     if folder is not None and _prepared(folder):
         _cache_in(folder, compiled)
     return compiled
+
+
+def inlined(function: F) -> F:
+    """Make a kernel that becomes a part of the one that calls it, before anything is compiled.
+
+    For what is called in one place only: a function of its own is compiled again as a part of each
+    one above it, which in a deep tree of calls takes longer than all the rest.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    joined: F = numba.njit(function, nogil=True, error_model="numpy", inline="always")
+    return joined
+
+
+def _compile_once_for_literals(compiled: Any) -> None:
+    """Let calls with constants share the machine code of calls with variables.
+
+    A kernel that is called with the constants 2 and 3 would be compiled for each of them, and so
+    would all that it calls: one for each pair of shapes that a game knows, for instance.
+    """
+    template = compiled.get_call_template
+
+    def get_call_template(arguments: Any, keywords: Any) -> Any:
+        plain = tuple(numba.types.unliteral(argument) for argument in arguments)
+        return template(
+            plain, {name: numba.types.unliteral(value) for name, value in dict(keywords).items()}
+        )
+
+    compiled.get_call_template = get_call_template
 
 
 def cache_folder(file: Path) -> Path | None:

@@ -26,8 +26,8 @@ from arkanoid.envs.rules import (
     ROWS,
     SILVER,
     UNBREAKABLE,
-    paddle_collider,
 )
+from arkanoid.envs.shapes import paddle_collider
 from arkanoid.envs.state import ABSENT, FLYING
 from arkanoid.envs.view import FULL_HEIGHT, FULL_WIDTH, HEADER_SCALE, make_view
 from hypothesis import given, settings
@@ -48,7 +48,7 @@ def new_game(**keywords: Any) -> Batch:
 
 
 def picture(batch: Batch, height: int = 512, width: int | None = None) -> NDArray[np.uint8]:
-    return draw_world(batch.worlds, batch.rules, batch.levels, 0, height, width)
+    return draw_world(batch.worlds, batch.rules, 0, height, width)
 
 
 def changed(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> NDArray[np.bool_]:
@@ -133,7 +133,7 @@ batch.reset(np.ones(1, np.bool_))
 world = batch.worlds[0]
 world.ball_x[0], world.ball_y[0], world.paddle_x, world.score = 3.21, 4.56, 7.89, 9870
 for size in ((84, 84), (130, 100)):
-    frame = draw_world(batch.worlds, batch.rules, batch.levels, 0, *size)
+    frame = draw_world(batch.worlds, batch.rules, 0, *size)
     print(hashlib.sha256(frame.tobytes()).hexdigest())
 """
 
@@ -208,7 +208,7 @@ def test_removing_a_brick_changes_its_cell_and_no_other_pixel(
     size: tuple[int, int], row: int, column: int
 ) -> None:
     batch = new_game()
-    batch.levels["kind"] = 1 + (np.arange(ROWS * COLUMNS) % GOLD)
+    batch.worlds["kind"] = 1 + (np.arange(ROWS * COLUMNS) % GOLD)
     batch.worlds[0].brick_hits[:] = 1
     full = picture(batch, *size)
     batch.worlds[0].brick_hits[row * COLUMNS + column] = 0
@@ -231,7 +231,7 @@ def brick_pictures(height: int, width: int) -> list[NDArray[np.int64]]:
     view = make_view(height, width)[0]
     batch.worlds[0].brick_hits[:] = 0
     for kind in range(1, GOLD + 1):
-        batch.levels["kind"] = kind
+        batch.worlds["kind"] = kind
         batch.worlds[0].brick_hits[60] = UNBREAKABLE if kind == GOLD else 2
         grey = picture(batch, height, width) @ LUMA
         rows, columns = view.rows[5:7], view.columns[5:7]
@@ -261,7 +261,7 @@ def test_silver_shows_its_damage_and_gold_has_none(
     batch = new_game()
     world = batch.worlds[0]
     world.round_number = round_number
-    batch.levels["kind"] = SILVER
+    batch.worlds["kind"] = SILVER
     needed = min(2 + (round_number - 1) // 8, UNBREAKABLE - 1)
     looks = []
     for hits in range(needed, 0, -1):
@@ -270,7 +270,7 @@ def test_silver_shows_its_damage_and_gold_has_none(
     assert looks[0] not in looks[1:]
     # Damage is shown in three steps, each of which is seen once there are so many hits.
     assert len(set(looks[1:])) == min(needed - 1, 3)
-    batch.levels["kind"] = GOLD
+    batch.worlds["kind"] = GOLD
     world.brick_hits[:] = UNBREAKABLE
     assert hashlib.sha256(picture(batch, *size)).hexdigest() not in looks
 
