@@ -202,7 +202,9 @@ def _free_way(
         if met < math.inf:
             # The other one keeps to its way, so that this one must not even go a part of its own.
             return 0.0, hit_x, hit_y
-    return min(1.0, max(0.0, time - ahead)), normal_x, normal_y
+    part = min(1.0, time - ahead)
+    # Less would be a rounding error's, for ever, where the way has ended.
+    return part if part > CLEARANCE else 0.0, normal_x, normal_y
 
 
 @inlined

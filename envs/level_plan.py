@@ -81,7 +81,7 @@ def seed_range(levels: str | range | Sequence[str]) -> range | None:
         levels = range(int(match[1]), int(match[2]) + 1)
     if not isinstance(levels, range):
         return None
-    if len(levels) == 0 or levels.step != 1 or levels.start < 0 or levels.stop - 1 > MAX_SEED:
+    if not levels or levels.step != 1 or levels.start < 0 or levels.stop - 1 > MAX_SEED:
         raise ValueError(
             f"levels must be a range of seeds from 0 to {MAX_SEED}, not empty and with step 1; "
             f"got {levels!r}"

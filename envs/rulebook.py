@@ -60,7 +60,7 @@ Rules = np.dtype(
             ("capsule_rate", np.float64),  # 0: there are none
             ("enemies", np.int64),  # 0: neither enemies nor boss
             ("first_seed", np.int64),  # of the generated rounds
-            ("num_seeds", np.int64),
+            ("num_seeds", np.float64),
             ("table_counts", np.int64),  # 1: the levels of the table are played
             ("endless", np.int64),  # 1: after the table's levels come generated ones; 0: again
             ("difficulty", np.float64),  # of generated rounds; negative: it rises
@@ -106,7 +106,7 @@ def make_rules(config: "Config", plan: "LevelPlan") -> Any:
     record.capsule_rate = config.capsule_rate if config.capsules else 0.0
     record.enemies = config.enemies
     record.first_seed = plan.seeds.start
-    record.num_seeds = len(plan.seeds)
+    record.num_seeds = plan.seeds.stop - plan.seeds.start
     record.table_counts = len(plan.names) > 0
     record.endless = plan.endless
     record.difficulty = -1.0 if config.difficulty is None else config.difficulty
