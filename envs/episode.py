@@ -26,6 +26,7 @@ from .state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED
 @inlined
 def begin_episode(world: Any, rules: Any, levels: Any) -> None:
     """Start a new game; of the world's past only its generator goes on, and how it shall begin."""
+    world.first_random = world.random
     world.done = 0
     world.decisions = 0
     world.idle = 0

@@ -36,6 +36,7 @@ World = np.dtype(
         np.record,
         [
             ("random", np.uint64),  # the generator's state, see random.py
+            ("first_random", np.uint64),  # as it was when this episode began
             ("done", np.int64),  # the episode is over; the next step resets in next-step mode
             ("decisions", np.int64),  # of this episode
             ("idle", np.int64),  # ticks since a brick or the boss was damaged
