@@ -9,6 +9,7 @@ from .rules import (
     BOSS_POINTS,
     BOSS_X,
     BOSS_Y,
+    FIELD_WIDTH,
     MAX_SHARDS,
     PADDLE_Y,
     SHARD_SPEED,
@@ -18,9 +19,8 @@ from .scoring import add_score, count_damage
 from .shapes import BOSS_SHAPE, SHARD_SHAPE
 from .state import ABSENT, FLYING
 
-# From where in the boss, below its middle, it throws; and where a shard is lost below the field.
+# From where in the boss, below its middle, it throws.
 MOUTH = 1.0
-BELOW = -0.5
 
 
 @kernel
@@ -102,6 +102,7 @@ def fly_shards(world: Any, rules: Any) -> bool:
         )
         world.shard_x[shard] += world.shard_vx[shard]
         world.shard_y[shard] += world.shard_vy[shard]
-        if world.shard_y[shard] < BELOW:
+        x = world.shard_x[shard]
+        if world.shard_y[shard] < 0.0 or x < 0.0 or x > FIELD_WIDTH:
             remove_shard(world, shard)
     return landed

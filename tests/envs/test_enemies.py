@@ -363,6 +363,19 @@ def test_a_shard_that_misses_is_gone():
     assert (info["lives"], int(world.shards)) == (3, 0)
 
 
+@pytest.mark.parametrize("side", [0, 11])
+def test_a_shard_ends_at_the_walls(side):
+    """One thrown at the paddle in the corner flew on beyond the wall, and was observed there."""
+    env, world = make_boss()
+    world.shard_state[0], world.shards = FLYING, 1
+    world.shard_x[0], world.shard_y[0] = abs(side - 0.1), 1.0
+    world.shard_vx[0], world.shard_vy[0] = (side - 5.5) * 0.01, -0.05
+    for _ in range(20):
+        rest(world)
+        assert env.observation_space.contains(env.step(NOOP)[0])
+    assert world.shards == 0
+
+
 def test_a_shard_lands_exactly_if_it_touches_the_moving_paddle():
     env, world = make_boss()
     world.lives = 10**6
