@@ -5,6 +5,10 @@ lower left corner. What a user may tune travels in a record (`rulebook.Rules`), 
 globals.
 """
 
+# To be raised with every change after which a game may take another course: recorded games and
+# snapshots of other versions are refused.
+RULES_VERSION = 1
+
 TICKS_PER_SECOND = 60
 
 FIELD_WIDTH = 11.0
