@@ -12,6 +12,8 @@ from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
 
 ACTIONS = ("discrete6", "discrete3", "box")
 OBSERVATIONS = ("vector",)
+# The keywords that say how a game is seen. All others decide its course.
+_SEEN = ("observation",)
 
 
 @dataclass(frozen=True)
@@ -20,9 +22,9 @@ class Config:
 
     Args:
         observation: ``"vector"``.
-        actions: ``"discrete6"``, (no-op, left, right) × (fire); ``"discrete3"``, without fire (balls
-            leave the paddle and the laser shoots by themselves); or ``"box"``, float32 [2]:
-            velocity in [-1, 1] as a part of the paddle's speed, and fire if the second is positive.
+        actions: ``"discrete6"``, (no-op, left, right) × (fire); ``"discrete3"``, without fire
+            (balls leave the paddle, and the laser shoots, by themselves); or ``"box"``, float32
+            [2]: velocity in [-1, 1], as a part of the paddle's speed, and fire if it is positive.
         reward: ``"progress"`` (each needed hit pays 1 / needed hits of the round, clearing pays 1),
             ``"score"`` (points / 1000) or ``"sparse"`` (1 for clearing a round).
         frame_skip: ticks a decision lasts; the reward is summed.
@@ -94,6 +96,25 @@ class Config:
                 hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}."
                 raise TypeError(f"unknown environment keyword {name!r}; {hint}")
         return cls(**keywords)
+
+    def plain(self) -> dict[str, Any]:
+        """Return the keywords as JSON and TOML hold them; `from_keywords` takes them back."""
+        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
+
+    def of_the_game(self) -> "Config":
+        """Return the configuration without what says only how the game is seen."""
+        names = [field.name for field in fields(self) if field.name not in _SEEN]
+        return Config(**{name: getattr(self, name) for name in names})
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, range):
+        return f"seeds:{value.start}-{value.stop - 1}"
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(item) for item in value]
+    return value
 
 
 def _boolean(name: str, value: object) -> None:
