@@ -122,9 +122,7 @@ def _first_impact(world: Any, rules: Any, x: float, y: float) -> tuple[int, int]
     if met < time:
         time, what, index = met, BRICK, cell
     if world.enemies > 0:
-        met, _, _, enemy = meet_enemies(
-            world, rules, BEAM_SHAPE, x, y, 0.0, BEAM_SPEED, 0.0, 1.0
-        )
+        met, _, _, enemy = meet_enemies(world, rules, BEAM_SHAPE, x, y, 0.0, BEAM_SPEED, 0.0, 1.0)
         if met < time:
             time, what, index = met, ENEMY, enemy
     if world.boss_hits > 0:

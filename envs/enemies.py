@@ -110,7 +110,7 @@ def steer_enemies(world: Any, rules: Any) -> None:
         world.enemy_vy[enemy] = 0.0
     for enemy in range(MAX_ENEMIES):
         state = world.enemy_state[enemy]
-        if state == ENTERING or state == DRIFTING:
+        if state in (ENTERING, DRIFTING):
             _drift(world, rules, enemy)
         elif state != ABSENT:
             _fly(world, rules, enemy)

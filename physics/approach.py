@@ -1,4 +1,4 @@
-"""What most pairs are asked while they move: do they meet? Bounding boxes first, for most do not."""
+"""What pairs are asked while they move: do they meet? Most do not: bounding boxes first."""
 
 import math
 from typing import Any
@@ -43,7 +43,7 @@ def will_touch(
     vy: float,
     duration: float,
 ) -> bool:
-    """Return whether b, at (dx, dy) from a and flying with (vx, vy) past it, meets or overlaps a."""
+    """Return whether b, at (dx, dy) from a, flying with (vx, vy) past it, meets or overlaps it."""
     if not may_touch(shapes, a, b, dx, dy, vx, vy, duration):
         return False
     return bool(impact_between(shapes, edges, a, b, dx, dy, vx, vy, duration)[0] < math.inf)
