@@ -17,10 +17,11 @@ from .interface import (
     check_render_mode,
     instance_metadata,
 )
-from .observation import observation_layout, vector_space
+from .snapshots import restore_snapshot, take_snapshot
 from .state import INFO_FIELDS, Outcome
 
 if TYPE_CHECKING:
+    from .recorder import Recorder
     from .window import Window
 
 Observation = NDArray[np.float32]
@@ -52,12 +53,13 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         self.config = Config.from_keywords(keywords)
         self.render_mode = render_mode
         self.metadata = instance_metadata(self.config)
-        self.observation_space = vector_space(self.config)
-        self.action_space = action_space(self.config)
-        self.layout = observation_layout(self.config)
         self._batch = Batch(1, self.config)
-        self._commands = COMMANDS.get(self.config.actions)
-        self._seeded = False
+        self.observation_space = self._batch.observer.space
+        self.action_space = action_space(self.config)
+        self.layout = self._batch.observer.layout
+        table = COMMANDS.get(self.config.actions)
+        # As Python's numbers, which are put into an array faster than a row of another array is.
+        self._commands = None if table is None else table.tolist()
         self._window: Window | None = None
 
     def reset(
@@ -73,14 +75,13 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         """
         super().reset(seed=seed)
         check_options(options)
-        if seed is None and not self._seeded:
+        if seed is None and not self._batch.seeded[0]:
             seed = int(self.np_random.integers(1 << 62))
         if seed is not None:
             self._batch.seed(0, seed)
-            self._seeded = True
         self._batch.reset(_ALL, options)
         self._show()
-        return self._batch.observations[0].copy(), self._info(self._batch.outcomes[0].item())
+        return self._shown()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one decision."""
@@ -88,11 +89,12 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         if self._commands is None:
             batch.command(np.asarray(action)[np.newaxis])
         elif 0 <= action < len(self._commands):
-            batch.commands[0] = self._commands[action]
+            batch.commands[0, 0], batch.commands[0, 1] = self._commands[action]
         else:
             raise ValueError(f"action {action!r} is not in {self.action_space}")
         batch.step()
-        outcome = batch.outcomes[0].item()
+        # An element of a structured array would be slower to make than all of them as tuples.
+        (outcome,) = batch.outcomes.tolist()
         if self.render_mode == "human":
             self._show()
         return (
@@ -113,11 +115,72 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             )
         return None
 
+    def snapshot(self) -> bytes:
+        """Return the whole state, random numbers included, to go on from with `restore`.
+
+        What wrappers count is not in it, `TimeLimit`'s steps, say; a deep copy of the wrapped
+        environment has that, too.
+
+        Raises:
+            RuntimeError: the environment was never reset.
+        """
+        return take_snapshot(self._batch)
+
+    def restore(self, snapshot: bytes) -> tuple[Observation, dict[str, Any]]:
+        """Go on from a snapshot, and return the observation and the info that were the latest then.
+
+        It may be of this environment, of another one of the same configuration, or of one world of
+        a vector environment of the same configuration.
+
+        Raises:
+            TypeError: it is not bytes.
+            ValueError: it is corrupt, of another version, configuration or other levels, or has
+                several worlds; the environment is as it was then.
+        """
+        restore_snapshot(self._batch, snapshot)
+        self._show()
+        return self._shown()
+
+    def clone(self, seed: int | None = None) -> "ArkanoidEnv":
+        """Return an independent environment in the same state, for planning: it takes some µs.
+
+        Only what never changes is shared, and the spaces; `copy.deepcopy` shares nothing. A clone
+        has no window.
+
+        Args:
+            seed: of the clone's random numbers from here on. None: it has the same ones ahead, so
+                that a planner sees what luck will bring.
+        """
+        clone = object.__new__(type(self))
+        clone.__dict__.update(self.__dict__)
+        clone._batch = self._batch.clone()
+        clone._window = None
+        if clone.render_mode == "human":
+            clone.render_mode = None
+        if seed is not None:
+            clone._batch.seed(0, seed)
+        return clone
+
+    def record(self) -> "Recorder":
+        """Begin to record games, for replays: from the next reset on, or the one just made."""
+        # Imported on demand: most play is not recorded.
+        from .recorder import Recorder
+
+        return Recorder(self._batch, 0)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A copy opens a window of its own.
+        return self.__dict__ | {"_window": None}
+
     def close(self) -> None:
         """Close the window, if there is one."""
         if self._window is not None:
             self._window.close()
             self._window = None
+
+    def _shown(self) -> tuple[Observation, dict[str, Any]]:
+        """Return the present observation and info."""
+        return self._batch.observations[0].copy(), self._info(self._batch.outcomes.tolist()[0])
 
     def _info(self, outcome: tuple[Any, ...]) -> dict[str, Any]:
         return dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))

@@ -3,8 +3,10 @@
 import itertools
 import os
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +16,15 @@ from .config import Config
 from .curriculum import choose_starts, forget_starts
 from .episode import begin_episode
 from .game import clear_events, decide
-from .level_plan import plan_levels
-from .observation import observe, vector_space
+from .level_plan import LevelPlan, plan_levels
+from .observer import Observe, make_observer
 from .random import seed_state
 from .rulebook import make_rules
+from .snapshots import describe_setup
 from .state import Outcome, World
+
+if TYPE_CHECKING:
+    from .recorder import Recorder
 
 # Velocity in [-1, 1] and fire of the discrete actions, float64 [actions, 2].
 _MOVES = [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0]]
@@ -42,30 +48,24 @@ class Autoreset(IntEnum):
 
 
 @kernel
-def reset_worlds(
-    worlds: Any, rules: Any, levels: Any, mask: Any, outcomes: Any, observations: Any
-) -> None:
-    """Begin a new episode in the worlds of a mask (bool [n]), and observe them."""
+def reset_worlds(worlds: Any, rules: Any, levels: Any, mask: Any, outcomes: Any) -> None:
+    """Begin a new episode in the worlds of a mask (bool [n])."""
     for index in range(worlds.shape[0]):
         if mask[index]:
-            _reset_world(worlds, rules, levels, outcomes, observations, index)
+            _reset_world(worlds[index], rules[0], levels, outcomes[index])
 
 
 @kernel
-def _reset_world(
-    worlds: Any, rules: Any, levels: Any, outcomes: Any, observations: Any, index: int
-) -> None:
+def _reset_world(world: Any, rules: Any, levels: Any, outcome: Any) -> None:
     """Begin a new episode in one world."""
-    outcome = outcomes[index]
-    begin_episode(worlds[index], rules[0], levels)
-    clear_events(worlds[index])
+    begin_episode(world, rules, levels)
+    clear_events(world)
     outcome.reward = 0.0
     outcome.hits = 0
     outcome.terminated = False
     outcome.truncated = False
     outcome.truncation = 0
-    _report(worlds[index], outcome)
-    observe(worlds[index], rules[0], observations[index])
+    _report(world, outcome)
 
 
 @inlined
@@ -85,43 +85,25 @@ def _report(world: Any, outcome: Any) -> None:
 
 @kernel
 def step_worlds(
-    worlds: Any,
-    rules: Any,
-    levels: Any,
-    commands: Any,
-    outcomes: Any,
-    observations: Any,
-    finals: Any,
-    final_observations: Any,
-    autoreset: int,
-) -> None:
-    """Play one decision in each world; the outcomes and observations are written in place.
+    worlds: Any, rules: Any, levels: Any, commands: Any, outcomes: Any, next_step: bool
+) -> int:
+    """Play one decision in each world; return how many episodes are over.
 
     Args:
         commands: float64 [n, 2], the velocity in [-1, 1] and fire (0 or 1).
-        finals, final_observations: in same-step mode, those of the episodes that ended.
-        autoreset: an `Autoreset` mode.
+        outcomes: `Outcome` records [n], written in place.
+        next_step: whether a world whose episode was over before begins a new one instead.
     """
+    over = 0
     for index in range(worlds.shape[0]):
-        world = worlds[index]
-        if autoreset == 1 and world.done:
-            _reset_world(worlds, rules, levels, outcomes, observations, index)
+        world, outcome = worlds[index], outcomes[index]
+        if next_step and world.done:
+            _reset_world(world, rules[0], levels, outcome)
             continue
-        outcome = outcomes[index]
         decide(world, rules[0], levels, commands[index, 0], commands[index, 1], outcome)
         _report(world, outcome)
-        observe(world, rules[0], observations[index])
-        if autoreset == 2 and world.done:
-            reward = outcome.reward
-            terminated, truncated = outcome.terminated, outcome.truncated
-            finals[index] = outcome
-            # As a loop, because assigning a slice costs two seconds of compilation.
-            for place in range(observations.shape[1]):
-                final_observations[index, place] = observations[index, place]
-            _reset_world(worlds, rules, levels, outcomes, observations, index)
-            outcome.reward = reward
-            outcome.terminated = terminated
-            outcome.truncated = truncated
+        over += world.done
+    return over
 
 
 @kernel
@@ -157,6 +139,27 @@ def decode_velocities(actions: Any, commands: Any) -> int:
     return -1
 
 
+@dataclass(frozen=True)
+class _Share:
+    """A thread's share of the worlds, with what its kernels take."""
+
+    index: slice
+    game: tuple[Any, ...]  # arguments of `step_worlds`
+    everywhere: NDArray[np.bool_]
+    observe: Observe
+
+
+def _bytes_of(records: Any) -> NDArray[np.uint8]:
+    """Return the bytes of records, uint8 [n, k]: copying records goes field by field."""
+    view: NDArray[np.uint8] = records.view(np.uint8).reshape(len(records), -1)
+    return view
+
+
+def _copy_of(records: Any) -> Any:
+    """Return a copy of records; NumPy's own takes 16 µs for one."""
+    return np.frombuffer(bytearray(records.tobytes()), records.dtype)
+
+
 class Batch:
     """Worlds that are played together, with the arrays that their steps read and write.
 
@@ -164,13 +167,16 @@ class Batch:
         num_worlds: how many, at least 1.
         config: the rules they share.
         threads: how many threads step them at the most; None lets the batch's size decide.
+        plan: the levels; None: those that the configuration names.
 
     Attributes:
         worlds: the state, `World` records [n].
         plan: the levels; rules: `Rules` [1]; levels: `Level` records.
         commands: float64 [n, 2], to be filled before `step`.
-        outcomes, finals: `Outcome` records [n].
-        observations, final_observations: float32 [n, k].
+        outcomes: `Outcome` records [n], of the latest step.
+        observer: what writes the observations.
+        finals, final_observations: in same-step mode, those of the episodes that ended.
+        recorders: that are told of every reset, step and restored state.
     """
 
     def __init__(
@@ -179,28 +185,73 @@ class Batch:
         config: Config,
         autoreset: Autoreset = Autoreset.DISABLED,
         threads: int | None = None,
+        plan: LevelPlan | None = None,
     ) -> None:
         self.config = config
         self.autoreset = autoreset
-        self.plan = plan_levels(config)
+        self.plan = plan_levels(config) if plan is None else plan
         self.rules = make_rules(config, self.plan)
         self.levels = self.plan.table
+        self._table = COMMANDS.get(config.actions)
+        self._threads = threads
         self.worlds = np.zeros(num_worlds, World)
         forget_starts(self.worlds)
-        self.commands: NDArray[np.float64] = np.zeros((num_worlds, 2))
         self.outcomes = np.zeros(num_worlds, Outcome)
-        self.finals = np.zeros(num_worlds, Outcome)
-        (length,) = vector_space(config).shape or ()
-        self.observations: NDArray[np.float32] = np.zeros((num_worlds, length), np.float32)
-        self.final_observations = np.zeros_like(self.observations)
-        self._table = COMMANDS.get(config.actions)
-        self._chunks = self._split(threads)
+        self.observer = make_observer(config, num_worlds)
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Make what else the worlds need to be stepped."""
+        count = self.num_worlds
+        self.commands: NDArray[np.float64] = np.zeros((count, 2))
+        self.finals = _copy_of(self.outcomes)
+        self.final_observations = np.zeros(self.observations.shape, self.observations.dtype)
+        self.recorders: list[Recorder] = []
+        self._whole = self._share(0, count)
+        self._shares = self._split(self._threads)
         self._pool: ThreadPoolExecutor | None = None
+
+    def clone(self) -> "Batch":
+        """Return an independent batch in the same state; nobody records it."""
+        clone = object.__new__(Batch)
+        clone.__dict__.update(self.__dict__)
+        clone.worlds = _copy_of(self.worlds)
+        clone.outcomes = _copy_of(self.outcomes)
+        clone.observer = self.observer.clone()
+        clone._prepare()
+        return clone
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Batch":
+        return self.clone()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Threads, and views of one another's memory, can't be pickled; they are made anew.
+        arguments = (self.num_worlds, self.config, self.autoreset, self._threads, self.plan)
+        return Batch, arguments, (self.worlds, self.outcomes, self.observations)
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        self.restore(*state)
 
     @property
     def num_worlds(self) -> int:
         """The number of worlds."""
         return len(self.worlds)
+
+    @property
+    def observations(self) -> NDArray[Any]:
+        """The latest observations, [n, ...]."""
+        return self.observer.observations
+
+    @property
+    def seeded(self) -> NDArray[np.bool_]:
+        """Whether each world's generator was seeded, bool [n]; one that was is never zero."""
+        seeded: NDArray[np.bool_] = self.worlds["random"] != 0
+        return seeded
+
+    @cached_property
+    def setup(self) -> bytes:
+        """What a state depends on besides itself, see `snapshots`."""
+        return describe_setup(self)
 
     def seed(self, index: int, seed: int) -> None:
         """Seed one world's generator."""
@@ -243,28 +294,64 @@ class Batch:
         """Begin a new episode in the worlds of a mask, bool [n]; options: see `curriculum`."""
         if options:
             choose_starts(self.worlds, mask, options, self.config, self.plan)
-        reset_worlds(self.worlds, self.rules, self.levels, mask, self.outcomes, self.observations)
+        reset_worlds(self.worlds, self.rules, self.levels, mask, self.outcomes)
+        self._whole.observe(mask)
+        for recorder in self.recorders:
+            recorder.reset(mask)
 
-    def restore(self, worlds: Any) -> None:
-        """Go on from a snapshot, a copy of `worlds`; the observations follow with the next step."""
-        self.worlds[:] = worlds
-        # What is written only when it changes must be written anew.
-        self.worlds["lattice_changed"] = 1
-        self.worlds["capsules_shown"] = 1
-        self.worlds["enemies_shown"] = 1
+    def check_over(self, worlds: NDArray[np.uint8]) -> None:
+        """Refuse worlds (their bytes) whose episode is over where there are none: a ValueError."""
+        if self.autoreset is Autoreset.SAME_STEP and worlds.view(World)["done"].any():
+            raise ValueError(
+                "an episode is over in the snapshot, and with autoreset_mode='SameStep' the next "
+                "one would have begun: restore it in an environment of another mode"
+            )
+
+    def restore(self, worlds: Any, outcomes: Any, observations: NDArray[Any]) -> None:
+        """Go on from another state: records or their bytes, of each world or of one for all."""
+        _bytes_of(self.worlds)[:] = _bytes_of(worlds)
+        _bytes_of(self.outcomes)[:] = _bytes_of(outcomes)
+        self.observer.recall(observations)
+        for recorder in self.recorders:
+            recorder.interrupt()
 
     def step(self) -> None:
-        """Play one decision, as `commands` say, in each world."""
-        if len(self._chunks) == 1:
-            step_worlds(*self._chunks[0])
+        """Play one decision, as `commands` say, in each world, and observe it."""
+        self._step_shares()
+        for recorder in self.recorders:
+            recorder.step()
+
+    def _step_shares(self) -> None:
+        self.observer.advance()
+        shares = self._shares
+        if len(shares) == 1:
+            self._step(shares[0])
             return
         if self._pool is None:
-            self._pool = ThreadPoolExecutor(len(self._chunks) - 1, "arkanoid")
+            self._pool = ThreadPoolExecutor(len(shares) - 1, "arkanoid")
         # The kernels release the GIL; the calling thread takes a share, too.
-        running = [self._pool.submit(step_worlds, *chunk) for chunk in self._chunks[1:]]
-        step_worlds(*self._chunks[0])
+        running = [self._pool.submit(self._step, share) for share in shares[1:]]
+        self._step(shares[0])
         for task in running:
             task.result()
+
+    def _step(self, share: _Share) -> None:
+        over = step_worlds(*share.game)
+        share.observe(share.everywhere)
+        if over > 0 and self.autoreset is Autoreset.SAME_STEP:
+            self._begin_again(share)
+
+    def _begin_again(self, share: _Share) -> None:
+        """Begin new episodes where they are over, and keep apart how those ended."""
+        worlds, rules, levels, _, outcomes, _ = share.game
+        over = worlds["done"] != 0
+        ended = outcomes[over]
+        self.finals[share.index][over] = ended
+        self.final_observations[share.index][over] = self.observations[share.index][over]
+        reset_worlds(worlds, rules, levels, over, outcomes)
+        for field in ("reward", "terminated", "truncated"):
+            outcomes[field][over] = ended[field]
+        share.observe(over)
 
     def close(self) -> None:
         """End the threads; a later step starts them again."""
@@ -272,22 +359,27 @@ class Batch:
             self._pool.shutdown()
             self._pool = None
 
-    def _split(self, threads: int | None) -> list[tuple[Any, ...]]:
-        """Return the kernel's arguments for each thread's share of the worlds."""
+    def _split(self, threads: int | None) -> list[_Share]:
+        """Return each thread's share of the worlds."""
         if threads is None:
             threads = min(os.cpu_count() or 1, max(1, self.num_worlds // WORLDS_PER_THREAD))
+        if threads == 1:
+            return [self._whole]
         bounds = np.linspace(0, self.num_worlds, min(threads, self.num_worlds) + 1).astype(int)
-        return [
+        return [self._share(start, stop) for start, stop in itertools.pairwise(bounds)]
+
+    def _share(self, start: int, stop: int) -> _Share:
+        index = slice(start, stop)
+        return _Share(
+            index,
             (
-                self.worlds[start:stop],
+                self.worlds[index],
                 self.rules,
                 self.levels,
-                self.commands[start:stop],
-                self.outcomes[start:stop],
-                self.observations[start:stop],
-                self.finals[start:stop],
-                self.final_observations[start:stop],
-                int(self.autoreset),
-            )
-            for start, stop in itertools.pairwise(bounds)
-        ]
+                self.commands[index],
+                self.outcomes[index],
+                self.autoreset is Autoreset.NEXT_STEP,
+            ),
+            np.ones(stop - start, np.bool_),
+            self.observer.part(self.worlds, self.rules, index),
+        )

@@ -5,6 +5,8 @@ lower edge to 1 at the ceiling. What is not there has zeros. Games without capsu
 no numbers for them.
 """
 
+from copy import copy
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +42,7 @@ from .state import ABSENT, HELD
 
 if TYPE_CHECKING:
     from .config import Config
+    from .observer import Observe
 
 
 def _slices(sizes: dict[str, int], start: int) -> dict[str, slice]:
@@ -141,17 +144,34 @@ _SHARD_VX = _EXTRAS["shard_vx"].start
 _SHARD_VY = _EXTRAS["shard_vy"].start
 
 
-def observation_layout(config: "Config") -> dict[str, slice]:
-    """Return the named slices of a configuration's observations, in order."""
-    return _CORE | _EXTRAS if config.capsules or config.enemies else dict(_CORE)
+class VectorObserver:
+    """`Observer` of vectors, float32 [n, k]."""
 
+    def __init__(self, config: "Config", num_worlds: int) -> None:
+        """Make the array; games without capsules and enemies have no numbers for them."""
+        full = config.capsules or config.enemies
+        length = FULL_LENGTH if full else CORE_LENGTH
+        self.layout = _CORE | _EXTRAS if full else dict(_CORE)
+        # Whether Box is generic depends on Gymnasium's version.
+        self.space: Any = spaces.Box(-1.0, 1.0, (length,), np.float32)
+        self.observations: NDArray[np.float32] = np.zeros((num_worlds, length), np.float32)
 
-def vector_space(config: "Config") -> spaces.Space[NDArray[np.float32]]:
-    """Return the space of one observation, a Box of float32."""
-    length = FULL_LENGTH if config.capsules or config.enemies else CORE_LENGTH
-    # Whether Box is generic depends on Gymnasium's version.
-    space: Any = spaces.Box(-1.0, 1.0, (length,), np.float32)
-    return space  # type: ignore[no-any-return]
+    def advance(self) -> None:
+        """Do nothing: a vector shows the present only."""
+
+    def recall(self, observations: NDArray[Any]) -> None:
+        """Go on from these vectors; the worlds know what of them is up to date."""
+        self.observations[:] = observations
+
+    def clone(self) -> "VectorObserver":
+        """Return one that shows the same in an array of its own."""
+        clone = copy(self)
+        clone.observations = self.observations.copy()
+        return clone
+
+    def part(self, worlds: Any, rules: Any, share: slice) -> "Observe":
+        """Return what observes a share of the worlds."""
+        return partial(observe_worlds, worlds[share], rules, self.observations[share])
 
 
 @kernel
@@ -164,6 +184,14 @@ def _across(x: float) -> float:
 def _up(y: float) -> float:
     """Return y on the field's scale; what is a little outside is at its edge."""
     return max(-1.0, min(1.0, y * (2.0 / FIELD_HEIGHT) - 1.0))
+
+
+@kernel
+def observe_worlds(worlds: Any, rules: Any, rows: Any, mask: Any) -> None:
+    """Observe the worlds of a mask; rows: float32 [n, k]."""
+    for index in range(worlds.shape[0]):
+        if mask[index]:
+            observe(worlds[index], rules[0], rows[index])
 
 
 @kernel

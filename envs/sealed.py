@@ -1,10 +1,7 @@
 """Bytes that can be kept: with what they are, a version and a checksum before them.
 
-    8 bytes  what it is
-    2 bytes  version of the format     unsigned, little-endian, as all numbers here
-    4 bytes  CRC-32 of the content
-    8 bytes  length of the content
-    content
+Eight bytes say what it is; then come, as unsigned little-endian numbers, the format's version (2
+bytes), the CRC-32 of the content (4) and its length (8); then the content.
 """
 
 import struct

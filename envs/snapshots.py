@@ -75,7 +75,7 @@ def spread_snapshot(batch: "Batch", snapshot: bytes) -> None:
     state = _unpack(batch, snapshot)
     if len(state[0]) != 1:
         raise ValueError(
-            f"the snapshot has {len(state[0])} worlds; spread() takes that of one: that of a single "
+            f"the snapshot has {len(state[0])} worlds, and spread() takes that of one: of a single "
             "environment, or snapshot(world)"
         )
     batch.restore(*state)
@@ -130,7 +130,7 @@ def _unpack(
         parts.append(np.frombuffer(content[place : place + size], np.uint8).reshape(count, -1))
         place += size
     worlds, outcomes, observations = parts
-    batch.check_over(worlds.view(World)["done"])
+    batch.check_over(worlds)
     shape = (count, *batch.observations.shape[1:])
     return worlds, outcomes, observations.view(batch.observations.dtype).reshape(shape)
 

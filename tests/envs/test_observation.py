@@ -1,6 +1,7 @@
 """The vector observation: every number is where its name says, and worth what the state says."""
 
-import numpy as np
+import itertools
+
 import pytest
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
 from arkanoid.envs.rules import BALL_SPEED, UNBREAKABLE
@@ -17,10 +18,7 @@ def make(**keywords):
 
 def show(env):
     """Return the observation of the world as it is, without playing."""
-    env._batch.restore(env._batch.worlds.copy())
-    from arkanoid.envs.observation import observe
-
-    observe(env._batch.worlds[0], env._batch.rules[0], env._batch.observations[0])
+    show_world(env, 0)
     row = env._batch.observations[0]
     return {name: row[where].tolist() for name, where in env.layout.items()}
 
@@ -34,7 +32,7 @@ def test_slices_follow_each_other_and_fill_the_observation():
         env = ArkanoidEnv(**keywords)
         ends = [(where.start, where.stop) for where in env.layout.values()]
         assert ends[0][0] == 0
-        assert all(a[1] == b[0] for a, b in zip(ends, ends[1:], strict=False))
+        assert all(a[1] == b[0] for a, b in itertools.pairwise(ends))
         assert env.observation_space.shape == (ends[-1][1],)
         assert ArkanoidVectorEnv(2, **keywords).layout == env.layout
 
@@ -147,14 +145,17 @@ def test_what_is_written_only_when_it_changes_is_never_stale():
         observations = env.step(env.action_space.sample())[0]
         if step % 10 == 0:
             other._batch.observations[:] = 7.0
-            other._batch.restore(env._batch.worlds)
+            other._batch.worlds[:] = env._batch.worlds
             for index in range(16):
                 show_world(other, index)
             assert observations.tobytes() == other._batch.observations.tobytes()
 
 
 def show_world(env, index):
+    """Write a world's observation anew, as if nothing of it were there."""
     from arkanoid.envs.observation import observe
 
     batch = env._batch
+    for flag in ("lattice_changed", "capsules_shown", "enemies_shown"):
+        batch.worlds[flag][index] = 1
     observe(batch.worlds[index], batch.rules[0], batch.observations[index])
