@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .batch import COMMANDS, Batch
+from .checks import check_integer
 from .config import Config
+from .generator import MAX_SEED
 from .interface import (
     METADATA,
     RENDER_MODES,
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from .recorder import Recorder
     from .window import Window
 
-Observation = NDArray[np.float32]
+Observation = NDArray[Any]
 
 _REWARD = Outcome.names.index("reward")  # type: ignore[union-attr]
 _TERMINATED = Outcome.names.index("terminated")  # type: ignore[union-attr]
@@ -158,6 +160,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         if clone.render_mode == "human":
             clone.render_mode = None
         if seed is not None:
+            check_integer("seed", seed, 0, MAX_SEED)
             clone._batch.seed(0, seed)
         return clone
 

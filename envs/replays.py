@@ -32,7 +32,6 @@ _MARK = b"ARKAPLAY"
 _FORMAT = 1
 _LENGTH = struct.Struct("<I")
 _MOST_COLOURS = 256  # of the palette of commands
-_SMALLEST = 9  # zlib's level
 
 # How a game began, as the world's record tells it.
 _START_FIELDS = ("start", "start_round", "start_seed", "start_difficulty", "start_boss")
@@ -147,7 +146,7 @@ class Replay:
         }
         text = json.dumps(head, separators=(",", ":")).encode()
         content = _LENGTH.pack(len(text)) + text + commands
-        return seal(_MARK, _FORMAT, zlib.compress(content, _SMALLEST))
+        return seal(_MARK, _FORMAT, _compress(content))
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "Replay":
@@ -176,6 +175,12 @@ class Replay:
             result=Result(**head["result"]),
             version=head["version"],
         )
+
+
+def _compress(content: bytes) -> bytes:
+    # A player's commands hold few long repetitions; looking for short ones makes them longer.
+    compressor = zlib.compressobj(level=9, strategy=zlib.Z_FILTERED)
+    return compressor.compress(content) + compressor.flush()
 
 
 def _letters(kinds: NDArray[np.uint8]) -> str:

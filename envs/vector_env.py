@@ -10,7 +10,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from .batch import Autoreset, Batch
+from .checks import check_integer
 from .config import Config
+from .generator import MAX_SEED
 from .interface import action_space, check_options, check_render_mode, instance_metadata
 from .snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .state import INFO_FIELDS
@@ -18,7 +20,7 @@ from .state import INFO_FIELDS
 if TYPE_CHECKING:
     from .recorder import Recorder
 
-Observations = NDArray[np.float32]
+Observations = NDArray[Any]
 
 _MODES = {
     AutoresetMode.DISABLED: Autoreset.DISABLED,
@@ -35,8 +37,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         render_mode: ``"rgb_array"`` or None.
         autoreset_mode: a Gymnasium `AutoresetMode` or its text (``"NextStep"``, ``"SameStep"``,
             ``"Disabled"``).
-        copy: whether `reset` and `step` return fresh arrays. With False they return the same
-            arrays each time, overwritten by the next step.
+        copy: whether `reset` and `step` return fresh observations. With False they return views of
+            the same memory each time, which a later step overwrites.
         threads: how many threads step the worlds at the most; None lets their number decide.
             It changes no bit of the results.
         **keywords: the rules and the interface, see `Config`.
@@ -180,6 +182,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         Raises:
             TypeError, ValueError: as `restore`.
         """
+        if seed is not None:
+            check_integer("seed", seed, 0, MAX_SEED)
         spread_snapshot(self._batch, snapshot)
         if seed is not None:
             for index in range(self.num_envs):
