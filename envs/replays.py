@@ -2,12 +2,12 @@
 
 A replay holds what a game came from: the rules' keywords, the levels' bricks, the state of the
 random generator when the game began, and what the player commanded in each decision. It is sealed
-(`sealed`); its content, compressed with zlib, is
+(`sealed`), with this content:
 
-    4 bytes  length of the JSON
-    JSON     everything but the commands, see `Replay`
-    commands one byte each, an index into the JSON's ``palette`` of [velocity, fire]; or, where more
-             than 256 different ones were given, float64 [decisions, 2] as planes of bytes
+    4 bytes  length of what is next, unsigned, little-endian
+    JSON     compressed with zlib: everything but the commands, see `Replay`
+    commands compressed with zlib: a byte each, its place in the JSON's ``palette`` of [velocity,
+             fire]; or, where ``palette`` is null, float64 [decisions, 2] as sixteen planes of bytes
 """
 
 import json
@@ -144,9 +144,8 @@ class Replay:
             "checksums": self.checksums,
             "palette": palette,
         }
-        text = json.dumps(head, separators=(",", ":")).encode()
-        content = _LENGTH.pack(len(text)) + text + commands
-        return seal(_MARK, _FORMAT, _compress(content))
+        text = zlib.compress(json.dumps(head, separators=(",", ":")).encode(), 9)
+        return seal(_MARK, _FORMAT, _LENGTH.pack(len(text)) + text + _compress(commands))
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "Replay":
@@ -156,10 +155,9 @@ class Replay:
             TypeError: they are no bytes.
             ValueError: as `load`.
         """
-        content = zlib.decompress(unseal("replay", _MARK, _FORMAT, data))
+        content = unseal("replay", _MARK, _FORMAT, data)
         (length,) = _LENGTH.unpack_from(content)
-        text, commands = content[_LENGTH.size :][:length], content[_LENGTH.size + length :]
-        head = json.loads(text)
+        head = json.loads(zlib.decompress(content[_LENGTH.size :][:length]))
         if head["rules"] != RULES_VERSION:
             raise ValueError(
                 f"the replay is of the rules' version {head['rules']}, recorded with release "
@@ -170,17 +168,19 @@ class Replay:
             config=Config.from_keywords(head["config"]),
             plan=_read_plan(head["levels"]),
             start=Start(**head["start"]),
-            commands=_unpack_commands(head["palette"], commands),
+            commands=_unpack_commands(
+                head["palette"], zlib.decompress(content[_LENGTH.size + length :])
+            ),
             checksums=tuple(head["checksums"]),
             result=Result(**head["result"]),
             version=head["version"],
         )
 
 
-def _compress(content: bytes) -> bytes:
-    # A player's commands hold few long repetitions; looking for short ones makes them longer.
+def _compress(commands: bytes) -> bytes:
+    # What repeats in a player's commands are long runs; looking for short ones makes files larger.
     compressor = zlib.compressobj(level=9, strategy=zlib.Z_FILTERED)
-    return compressor.compress(content) + compressor.flush()
+    return compressor.compress(commands) + compressor.flush()
 
 
 def _letters(kinds: NDArray[np.uint8]) -> str:
