@@ -171,6 +171,16 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
 
         return Recorder(self._batch, 0)
 
+    def get_keys_to_action(self) -> dict[tuple[int, ...], Any]:
+        """Return the action of each combination of keys: ``gymnasium.utils.play.play`` asks for it.
+
+        Arrows or A and D move, space fires. With ``actions="box"`` play() also needs
+        ``noop=numpy.zeros(2, numpy.float32)``, for its own is the number 0.
+        """
+        from .controls import keys_to_action
+
+        return keys_to_action(self.config)
+
     def __getstate__(self) -> dict[str, Any]:
         # A copy opens a window of its own.
         return self.__dict__ | {"_window": None}
