@@ -196,7 +196,7 @@ class Batch:
         self._threads = threads
         self.worlds = np.zeros(num_worlds, World)
         forget_starts(self.worlds)
-        self.outcomes = np.zeros(num_worlds, Outcome)
+        self.outcomes: Any = np.zeros(num_worlds, Outcome)
         self.observer = make_observer(config, num_worlds)
         self._prepare()
 

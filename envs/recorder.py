@@ -76,7 +76,7 @@ class Recorder:
         self._batch = batch
         self._world = world
         self._command = batch.commands[world]
-        self._checked = [batch.worlds[name][world : world + 1] for name in _CHECKED]
+        self._checked: list[Any] = [batch.worlds[name][world : world + 1] for name in _CHECKED]
         self._recording = False
         self._over = False
         self._start: Start
