@@ -9,11 +9,14 @@ import numpy as np
 
 from .checks import check_choice, check_integer, check_number
 from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
+from .view import MAX_SIZE
 
 ACTIONS = ("discrete6", "discrete3", "box")
-OBSERVATIONS = ("vector",)
+OBSERVATIONS = ("vector", "grid", "rgb")
 # The keywords that say how a game is seen. All others decide its course.
-_SEEN = ("observation",)
+_PICTURES = ("size", "grey", "stack")
+_SEEN = ("observation", *_PICTURES)
+MAX_STACK = 64
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,11 @@ class Config:
     """The configuration of an environment; every field is a keyword of `gym.make`.
 
     Args:
-        observation: ``"vector"``.
+        observation: ``"vector"`` (float32 numbers, see `observation`), ``"grid"`` (float32 planes
+            over the cells of the field, see `grid`) or ``"rgb"`` (uint8 pictures, see `pixels`).
+        size: pixels of a picture's sides, or (height, width). It needs ``"rgb"``, as the next two.
+        grey: whether pictures have one channel, their brightness, instead of red, green and blue.
+        stack: how many pictures an observation shows, the latest as the last.
         actions: ``"discrete6"``, (no-op, left, right) × (fire); ``"discrete3"``, without fire
             (balls leave the paddle, and the laser shoots, by themselves); or ``"box"``, float32
             [2]: velocity in [-1, 1], as a part of the paddle's speed, and fire if it is positive.
@@ -51,6 +58,9 @@ class Config:
     """
 
     observation: str = "vector"
+    size: int | Sequence[int] = 84
+    grey: bool = False
+    stack: int = 1
     actions: str = "discrete6"
     reward: str = "progress"
     frame_skip: int = 4
@@ -69,6 +79,7 @@ class Config:
 
     def __post_init__(self) -> None:
         check_choice("observation", self.observation, OBSERVATIONS)
+        self._check_pictures()
         check_choice("actions", self.actions, ACTIONS)
         check_choice("reward", self.reward, tuple(REWARDS))
         check_choice("deflection", self.deflection, tuple(DEFLECTIONS))
@@ -85,6 +96,36 @@ class Config:
         check_number("capsule_rate", self.capsule_rate, 0.0, 1.0)
         _boolean("enemies", self.enemies)
         _levels(self.levels)
+
+    def _check_pictures(self) -> None:
+        if not isinstance(self.size, int | np.integer):
+            if isinstance(self.size, str) or not isinstance(self.size, Sequence):
+                raise TypeError(f"size must be an integer or (height, width); got {self.size!r}")
+            if len(self.size) != 2:
+                raise ValueError(f"size must be an integer or (height, width); got {self.size!r}")
+            # As a tuple, for JSON and TOML know lists only.
+            object.__setattr__(self, "size", tuple(self.size))
+        for pixels in self.picture_size:
+            check_integer("size", pixels, 1, MAX_SIZE)
+        _boolean("grey", self.grey)
+        check_integer("stack", self.stack, 1, MAX_STACK)
+        if self.observation == "rgb":
+            return
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in _PICTURES and value != field.default:
+                raise ValueError(
+                    f"{field.name}={value!r} says how pictures look, and observation="
+                    f"{self.observation!r} has none: leave it out, or use observation='rgb'"
+                )
+
+    @property
+    def picture_size(self) -> tuple[int, int]:
+        """The height and width of an observed picture, in pixels."""
+        if isinstance(self.size, Sequence):
+            height, width = self.size
+            return height, width
+        return self.size, self.size
 
     @classmethod
     def from_keywords(cls, keywords: dict[str, Any]) -> "Config":

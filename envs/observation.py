@@ -14,6 +14,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from ..physics.compilation import inlined, kernel
+from .layout import slices
 from .rules import (
     BEAM_TICKS,
     BOSS_HITS,
@@ -45,15 +46,7 @@ if TYPE_CHECKING:
     from .observer import Observe
 
 
-def _slices(sizes: dict[str, int], start: int) -> dict[str, slice]:
-    layout = {}
-    for name, size in sizes.items():
-        layout[name] = slice(start, start + size)
-        start += size
-    return layout
-
-
-_CORE = _slices(
+_CORE = slices(
     {
         "paddle": 3,  # x of the middle, half the width (of half the field's), velocity
         "ball_in_play": MAX_BALLS,  # 1: lies on the paddle or flies
@@ -72,7 +65,7 @@ _CORE = _slices(
     0,
 )
 CORE_LENGTH = _CORE["bricks"].stop
-_EXTRAS = _slices(
+_EXTRAS = slices(
     {
         "power": POWERS,  # 1 for catch, enlarge, laser
         "exit_open": 1,  # 1: the gate in the right wall

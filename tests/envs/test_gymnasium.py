@@ -15,6 +15,9 @@ GAMES = [
     LIVELY | {"capsules": False, "enemies": False, "levels": "ripple"},
     LIVELY | {"capsule_rate": 1.0, "levels": "seeds:0-99", "max_decisions": 300, "lives": 2},
     LIVELY | {"levels": ["warden", "vault"], "actions": "box", "max_decisions": 200},
+    LIVELY | {"observation": "grid", "capsule_rate": 1.0},
+    LIVELY | {"observation": "rgb", "size": 42, "grey": True, "stack": 4, "capsule_rate": 1.0},
+    LIVELY | {"observation": "rgb", "size": (30, 40)},
 ]
 
 
