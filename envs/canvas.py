@@ -47,7 +47,7 @@ def copy_bytes(target: Any, source: Any) -> None:
 
 @kernel
 def mark(drawn: Any, image: Any, left: float, top: float, right: float, bottom: float) -> None:
-    """Note a box, in pixels, in which a thing is drawn; what lies outside the picture is cut off."""
+    """Note a box, in pixels, in which a thing is drawn, cut off at the picture's edges."""
     first_row, end_row = first_pixel(top), last_pixel(bottom, image.shape[0])
     first_column, end_column = first_pixel(left), last_pixel(right, image.shape[1])
     if first_row >= end_row or first_column >= end_column:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from .bricks import hits_needed
 from .canvas import copy_bytes
 from .rules import CELLS, COLUMNS, ROWS, SILVER
@@ -20,7 +20,7 @@ def brick_look(kind: int, hits_left: int, round_number: int) -> int:
     return kind if hits_left >= needed else DAMAGED + 1 + (needed - hits_left) * DAMAGES // needed
 
 
-@kernel
+@inlined
 def begin_picture(lines: Any, drawn: Any, sheets: Any) -> None:
     """Copy the whole background: a picture of an empty field."""
     for row in range(lines.shape[0]):
@@ -34,7 +34,7 @@ def begin_picture(lines: Any, drawn: Any, sheets: Any) -> None:
         drawn.kind[cell] = 0
 
 
-@kernel
+@inlined
 def erase_things(lines: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Put background and bricks back into the boxes of the things that were drawn."""
     channels = sheets.palette.shape[1]
@@ -47,7 +47,7 @@ def erase_things(lines: Any, drawn: Any, sheets: Any, world: Any) -> None:
     drawn.marks = 0
 
 
-@kernel
+@inlined
 def _restore_bricks(
     lines: Any, sheets: Any, world: Any, left: int, top: int, right: int, bottom: int
 ) -> None:
@@ -76,7 +76,7 @@ def _draw_cell(lines: Any, sheets: Any, world: Any, row: int, column: int) -> No
         copy_bytes(lines[y, start:end], sheets.looks[look, y - top, start - left : end - left])
 
 
-@kernel
+@inlined
 def draw_bricks(lines: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the cells that the picture shows otherwise than they are."""
     # Silver shows its damage as a part of the hits that it needs in a round.
@@ -93,7 +93,7 @@ def draw_bricks(lines: Any, drawn: Any, sheets: Any, world: Any) -> None:
             _draw_cell(lines, sheets, world, cell // COLUMNS, cell % COLUMNS)
 
 
-@kernel
+@inlined
 def _bricks_differ(drawn: Any, world: Any) -> bool:
     """Return whether any brick may look otherwise than the picture shows it."""
     difference = 0

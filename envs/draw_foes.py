@@ -1,11 +1,11 @@
-"""What is against the player: enemies, the boss and its shards, all with their colliders' shapes."""
+"""What is against the player: enemies, the boss and its shards, in their colliders' shapes."""
 
 import math
 from typing import Any
 
 import numpy as np
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from .boss import MOUTH
 from .canvas import mark_shape
 from .palette import (
@@ -22,6 +22,7 @@ from .palette import (
     ENEMY_RIM,
     ENEMY_SHADED,
     EYE,
+    OPENING,
     PUPIL,
     SHARD,
     SHARD_RIM,
@@ -47,26 +48,26 @@ CRACK_WIDTH = 0.055
 # One crack more for each hit: from (x, y) to (x, y), from the boss's middle, y up.
 BOSS_CRACKS = np.array(
     [
-        (-1.15, 1.25, -0.85, 0.88),
-        (1.5, -0.42, 1.08, -0.3),
-        (-0.85, 0.88, -1.02, 0.6),
-        (0.5, 1.25, 0.3, 0.92),
-        (-1.6, 0.1, -1.2, -0.05),
-        (1.08, -0.3, 0.82, -0.66),
-        (0.3, 0.92, 0.6, 0.66),
-        (-1.2, -0.05, -0.95, -0.5),
-        (1.66, 0.7, 1.25, 0.74),
-        (-0.5, -1.36, -0.55, -0.92),
-        (0.6, 0.66, 0.12, 0.3),
-        (1.25, 0.74, 1.02, 1.02),
-        (-0.95, -0.5, -1.12, -0.74),
-        (0.12, 0.3, -0.2, -0.1),
-        (0.82, -0.66, 0.45, -0.8),
+        (-1.09, 1.19, -0.81, 0.84),
+        (1.42, -0.4, 1.03, -0.28),
+        (-0.81, 0.84, -0.97, 0.57),
+        (0.47, 1.19, 0.28, 0.87),
+        (-1.52, 0.1, -1.14, -0.05),
+        (1.03, -0.28, 0.78, -0.63),
+        (0.28, 0.87, 0.57, 0.63),
+        (-1.14, -0.05, -0.9, -0.47),
+        (1.58, 0.66, 1.19, 0.7),
+        (-0.47, -1.29, -0.52, -0.87),
+        (0.57, 0.63, 0.11, 0.28),
+        (1.19, 0.7, 0.97, 0.97),
+        (-0.9, -0.47, -1.06, -0.7),
+        (0.11, 0.28, -0.19, -0.1),
+        (0.78, -0.63, 0.43, -0.76),
     ]
 )
 
 
-@kernel
+@inlined
 def draw_enemies(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
     """Draw the enemies; above the gate through which they come they are not seen."""
     if world.enemies == 0:
@@ -83,7 +84,7 @@ def draw_enemies(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) ->
             _draw_enemy(image[hidden:], sheets, world, rules, enemy, x, y - hidden)
 
 
-@kernel
+@inlined
 def _draw_enemy(
     image: Any, sheets: Any, world: Any, rules: Any, enemy: int, x: float, y: float
 ) -> None:
@@ -103,7 +104,7 @@ def _draw_enemy(
     fill_disc(image, x + vx * gaze, y - vy * gaze, PUPIL_RADIUS * scale, palette[PUPIL])
 
 
-@kernel
+@inlined
 def draw_boss(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
     """Draw the boss, if it is there: redder with its damage, and a crack for each hit."""
     if world.boss_hits == 0:
@@ -138,7 +139,7 @@ def draw_boss(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> No
         )
         _draw_stroke(image, x, y, scale, 0.95 * side, 0.55, 0.16 * side, 0.22, 0.18, brow)
     mouth = MOUTH_RADIUS * scale
-    fill_disc(image, x, y + MOUTH * scale, mouth, rim)
+    fill_disc(image, x, y + MOUTH * scale, mouth, palette[OPENING])
     if world.shard_wait < GLOW_TICKS:
         part = 1.0 - world.shard_wait / GLOW_TICKS
         fill_disc(image, x, y + MOUTH * scale, 0.9 * part * mouth, palette[BOSS_GLOW])
@@ -169,7 +170,7 @@ def _draw_stroke(
     )
 
 
-@kernel
+@inlined
 def draw_shards(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
     """Draw what the boss has thrown."""
     if world.shards == 0:
@@ -178,6 +179,7 @@ def draw_shards(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
     scale = view.scale
     shape, edges = rules.shapes[SHARD_SHAPE], rules.edges
     rim, body = palette[SHARD_RIM], palette[SHARD]
+    size = scale * (SHARD_BODY if view.header == 1 else 1.0)
     for shard in range(MAX_SHARDS):
         if world.shard_state[shard] == ABSENT:
             continue
@@ -185,4 +187,4 @@ def draw_shards(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
         y = view.bottom - world.shard_y[shard] * scale
         mark_shape(drawn, image, shape, x, y, scale)
         fill_convex(image, shape, edges, x, y, scale, rim, rim)
-        fill_convex(image, shape, edges, x, y, SHARD_BODY * scale, body, body)
+        fill_convex(image, shape, edges, x, y, size, body, body)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined
 from .canvas import copy_bytes
 from .draw_player import draw_capsule
 from .font import count_digits, draw_number, text_step
@@ -29,7 +29,7 @@ SCORE_WIDTH = 4.4  # the score grows smaller to stay within it
 POWER_X = 10.55  # the middle of the capsule that shows the power
 
 
-@kernel
+@inlined
 def draw_header(image: Any, lines: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the score line anew if it shows anything otherwise than it is."""
     if (
@@ -54,7 +54,7 @@ def draw_header(image: Any, lines: Any, drawn: Any, sheets: Any, world: Any) -> 
         draw_capsule(image, sheets, world.power, x, y)
 
 
-@kernel
+@inlined
 def _draw_values(image: Any, view: Any, palette: Any, world: Any) -> None:
     """Draw the numbers of the score line, and the lives as small paddles."""
     scale = view.scale
@@ -72,7 +72,7 @@ def _draw_values(image: Any, view: Any, palette: Any, world: Any) -> None:
         draw_number(image, world.lives, x, top, height, value)
 
 
-@kernel
+@inlined
 def _draw_life(image: Any, palette: Any, x: float, y: float, scale: float) -> None:
     """Draw a small paddle on the score line; x, y: upper left corner of the line, in pixels."""
     top = y + (VALUE_HEIGHT - LIFE_HEIGHT) / 2 * scale

@@ -1,8 +1,8 @@
-"""What the player has: the paddle with its powers, balls, beams, and the capsules that bring them."""
+"""What the player has: the paddle with its powers, balls, beams; and capsules, which bring them."""
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, kernel
 from .canvas import mark, mark_shape
 from .font import GLYPH_WIDTH, draw_glyph
 from .palette import (
@@ -52,11 +52,12 @@ MUZZLE_WIDTH = 0.2  # of the laser, where its beams start
 CAPSULE_CORNER = 0.1
 CAPSULE_RIM = 0.035
 LETTER_HEIGHT = 0.27
+STRIPE = 0.2  # in the letter's place where it could not be read
 
 _LETTERS = tuple(ord(letter) for letter in CAPSULE_LETTERS)
 
 
-@kernel
+@inlined
 def draw_paddle(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
     """Draw the paddle's collider, with ends and a body that show its power."""
     view, palette = sheets.views[0], sheets.palette
@@ -92,7 +93,7 @@ def draw_paddle(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
                 blend_channel(image, row, column, channel, colour, coverage)
 
 
-@kernel
+@inlined
 def draw_balls(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the balls; where there is room, with a rim, and a highlight at the upper left."""
     view, palette = sheets.views[0], sheets.palette
@@ -110,7 +111,7 @@ def draw_balls(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
             fill_disc(image, x, y, radius, palette[BALL])
 
 
-@kernel
+@inlined
 def draw_beams(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the laser's beams: bright in the middle."""
     view, palette = sheets.views[0], sheets.palette
@@ -128,7 +129,7 @@ def draw_beams(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
         fill_rectangle(image, x - inset, top, x + inset, bottom, core, core)
 
 
-@kernel
+@inlined
 def draw_falling_capsule(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the capsule that falls, if there is one."""
     if world.capsule == NO_CAPSULE:
@@ -146,19 +147,18 @@ def draw_capsule(image: Any, sheets: Any, kind: int, x: float, y: float) -> None
     """Draw a capsule of a kind, its middle at x, y in pixels, with its letter if it can be read."""
     palette, scale = sheets.palette, sheets.views[0].scale
     across, along = CAPSULE_WIDTH / 2 * scale, CAPSULE_HEIGHT / 2 * scale
-    corner, rim = CAPSULE_CORNER * scale, CAPSULE_RIM * scale
+    left, top, right, bottom = x - across, y - along, x + across, y + along
     body, letter = palette[CAPSULE + kind], palette[LETTER + kind]
-    fill_rounded_rectangle(
-        image, x - across, y - along, x + across, y + along, corner, palette[CAPSULE_SHADED + kind]
-    )
-    fill_rounded_rectangle(
-        image, x - across + rim, y - along + rim, x + across - rim, y + along - rim, corner, body
-    )
     if sheets.views[0].header == 0:
-        mark_half = 0.1 * scale
-        fill_rectangle(image, x - mark_half, y - along, x + mark_half, y + along, letter, letter)
+        half = STRIPE / 2 * scale
+        fill_rectangle(image, left, top, right, bottom, body, body)
+        fill_rectangle(image, x - half, top, x + half, bottom, letter, letter)
         return
-    left, right, top = x - across + corner, x + across - corner, y - along + rim
-    fill_rectangle(image, left, top, right, top + along, palette[CAPSULE_LIT + kind], body)
+    corner, rim = CAPSULE_CORNER * scale, CAPSULE_RIM * scale
+    shaded, lit = palette[CAPSULE_SHADED + kind], palette[CAPSULE_LIT + kind]
+    fill_rounded_rectangle(image, left, top, right, bottom, corner, shaded)
+    left, top, right, bottom = left + rim, top + rim, right - rim, bottom - rim
+    fill_rounded_rectangle(image, left, top, right, bottom, corner, body)
+    fill_rectangle(image, left + corner, top, right - corner, y, lit, body)
     height = LETTER_HEIGHT * scale
     draw_glyph(image, _LETTERS[kind], x - GLYPH_WIDTH * height / 2, y - height / 2, height, letter)

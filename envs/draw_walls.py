@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined
 from .canvas import mark
 from .palette import ARROW, LAMP, OPENING
 from .raster import draw_line, fill_rectangle
@@ -15,7 +15,7 @@ EDGE = 0.06  # of a wing of a gate, lit
 MARK_HEIGHT = 0.2
 
 
-@kernel
+@inlined
 def gate_opening(world: Any, gate: int) -> float:
     """Return how far a gate of the ceiling is open, from 0 to 1."""
     for enemy in range(MAX_ENEMIES):
@@ -27,7 +27,7 @@ def gate_opening(world: Any, gate: int) -> float:
     return 1.0 - world.enemy_wait / GATE_TICKS
 
 
-@kernel
+@inlined
 def draw_gates(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the gates of the ceiling that are not closed, with lit edges on their wings."""
     if world.enemies == 0 and world.enemy_wait >= GATE_TICKS:
@@ -55,7 +55,7 @@ def draw_gates(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
         fill_rectangle(image, right - edge, top, right, bottom, lamp, lamp)
 
 
-@kernel
+@inlined
 def draw_exit(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
     """Draw the open exit in the right wall: arrows that point out."""
     if world.exit_open == 0:

@@ -130,12 +130,12 @@ _OTHERS = [
     (255, 240, 204),  # BEAM_CORE
     (250, 252, 255),  # EYE
     (14, 12, 26),  # PUPIL
-    (30, 22, 56),  # BOSS_RIM
+    (104, 92, 150),  # BOSS_RIM
     (44, 34, 78),  # BOSS_FACE
     (96, 84, 148),  # BOSS_BROW
     (255, 226, 110),  # BOSS_EYE
     (255, 140, 60),  # BOSS_GLOW
-    (150, 34, 30),  # SHARD_RIM
+    (204, 62, 40),  # SHARD_RIM
     (255, 206, 120),  # SHARD
     (78, 84, 108),  # DOOR
     (30, 32, 48),  # SEAM
@@ -167,7 +167,7 @@ def _palette() -> NDArray[np.float64]:
             np.where(bright, (24.0, 24.0, 40.0), (255.0, 255.0, 255.0)),
             *paddles.transpose(1, 0, 2),
             *enemies.transpose(1, 0, 2),
-            enemies[:, 1] * 0.35,
+            enemies[:, 1] * 0.65,
             *boss.transpose(1, 0, 2),
             np.array(_OTHERS, np.float64),
         ]
