@@ -153,9 +153,10 @@ def channel_sheets(height: int, width: int, grey: bool) -> tuple[Scenery, ...]:
     """Return the `Scenery` of each channel of pictures, as of pictures in one colour."""
     if grey:
         return (scenery(height, width, 1),)
-    views, *arrays = scenery(height, width, 3)
+    shared = scenery(height, width, 3)
+    arrays = shared.palette, shared.background, shared.looks
     return tuple(
-        Scenery(views, *(_channel(array, index) for array in arrays)) for index in range(3)
+        Scenery(shared.views, *(_channel(array, index) for array in arrays)) for index in range(3)
     )
 
 
