@@ -105,7 +105,7 @@ class _Saver:
 
 
 def free_path(path: Path) -> Path:
-    """Return a path at which there is no file: the one given, or with a number before its suffix."""
+    """Return a path without a file: the one given, or it with a number before its suffix."""
     number = 2
     free = path
     while free.exists():

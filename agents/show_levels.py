@@ -1,4 +1,4 @@
-"""`arkanoid levels`: the named rounds as a list, and any level drawn, in the terminal or as a PNG."""
+"""`arkanoid levels`: the named rounds as a list; any level in the terminal or as a PNG."""
 
 import argparse
 import os

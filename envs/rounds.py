@@ -104,7 +104,10 @@ def load_round(name_or_path: str) -> Round:
             f"no level {name_or_path!r}: it is neither a file nor one of the packaged rounds "
             f"({', '.join(named_rounds())}).{hint}"
         )
-    return parse_round(path.read_text("utf-8"), name_or_path)
+    try:
+        return parse_round(path.read_text("utf-8"), name_or_path)
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{name_or_path}: no text in UTF-8: {error}") from None
 
 
 def parse_round(text: str, source: str) -> Round:

@@ -1,4 +1,4 @@
-"""A sitting at the game: one game after the other, pauses and titles. No window is needed for it."""
+"""A sitting: one game after the other, pauses and titles. No window is needed for it."""
 
 import math
 from collections.abc import Callable
@@ -77,12 +77,8 @@ class Sitting:
         self._batch.seed(0, seed)
         self._waited = 0  # ticks in this phase
         self._title = TITLE_TICKS  # ticks since a round began
-        names = self._batch.plan.names
-        levels = self._batch.levels["kind"]
-        self._names = {
-            kinds.tobytes(): load_round(name).name
-            for name, kinds in zip(names, levels, strict=False)
-        }
+        levels = [load_round(name) for name in self._batch.plan.names]
+        self._names = {level.kinds.tobytes(): level.name for level in levels}
         self._lay_out(options)
 
     @property
