@@ -94,6 +94,7 @@ def describe_setup(batch: "Batch") -> bytes:
     """
     config = batch.config.plain()
     del config["levels"]
+    config["size"] = batch.config.picture_size
     plan = batch.plan
     levels = (plan.table.tobytes(), plan.seeds, plan.endless, len(plan.names))
     layout = (World.descr, Outcome.descr, batch.rules.tobytes(), batch.observations.dtype.str)

@@ -24,6 +24,13 @@ LIVELY = {
     "levels": ["warden", "ripple"],
 }
 MODES = ["NextStep", "SameStep", "Disabled"]
+# Ways to see a game; a stack of pictures remembers earlier ones.
+SEEN = [
+    {},
+    {"observation": "grid"},
+    {"observation": "rgb", "size": 24, "grey": True, "stack": 3},
+    {"observation": "rgb", "size": (20, 16)},
+]
 
 
 def bits(result):
@@ -69,9 +76,10 @@ def begun(count=None, steps=50, seed=0, **keywords):
     seed=st.integers(0, 10**6),
     actions=st.sampled_from(["discrete6", "discrete3", "box"]),
     lively=st.booleans(),
+    seen=st.sampled_from(SEEN),
 )
-def test_a_game_goes_on_from_any_point_as_it_did(before, between, seed, actions, lively):
-    keywords = (LIVELY if lively else {}) | {"actions": actions, "frame_skip": 1 + seed % 4}
+def test_a_game_goes_on_from_any_point_as_it_did(before, between, seed, actions, lively, seen):
+    keywords = (LIVELY if lively else {}) | {"actions": actions, "frame_skip": 1 + seed % 4} | seen
     env, other = ArkanoidEnv(**keywords), ArkanoidEnv(**keywords)
     env.reset(seed=seed)
     play(env, before, seed)
@@ -92,15 +100,16 @@ def test_a_game_goes_on_from_any_point_as_it_did(before, between, seed, actions,
     seed=st.integers(0, 10**6),
     count=st.integers(1, 9),
     threads=st.integers(1, 3),
+    seen=st.sampled_from(SEEN),
 )
-def test_a_vector_env_goes_on_from_any_point_as_it_did(mode, steps, seed, count, threads):
+def test_a_vector_env_goes_on_from_any_point_as_it_did(mode, steps, seed, count, threads, seen):
     """Worlds that wait for their reset included, and with any number of threads."""
-    env = begun(count, steps, seed, autoreset_mode=mode, threads=threads)
+    env = begun(count, steps, seed, autoreset_mode=mode, threads=threads, **seen)
     snapshot = env.snapshot()
     first = play(env, 120, 1)
     env.restore(snapshot)
     assert play(env, 120, 1) == first
-    other = ArkanoidVectorEnv(count, autoreset_mode=mode, threads=1, **LIVELY)
+    other = ArkanoidVectorEnv(count, autoreset_mode=mode, threads=1, **LIVELY | seen)
     other.restore(snapshot)
     assert play(other, 120, 1) == first
     env.close()
@@ -141,11 +150,13 @@ def test_how_episodes_begin_is_restored():
     assert bits(fresh.reset()) == first
 
 
+@pytest.mark.parametrize("seen", SEEN)
 @pytest.mark.parametrize("mode", MODES)
-def test_a_world_moves_between_a_vector_env_and_a_single_one(mode):
-    keywords = {"max_decisions": 1000, "lives": 100}
+def test_a_world_moves_between_a_vector_env_and_a_single_one(mode, seen):
+    """Also where one of them has come further than the other since it began."""
+    keywords = {"max_decisions": 1000, "lives": 100} | seen
     vector = begun(5, autoreset_mode=mode, **keywords)
-    single = ArkanoidEnv(**LIVELY | keywords)
+    single = begun(steps=7, **keywords)
     for world in range(5):
         observation, _ = single.restore(vector.snapshot(world))
         assert observation.tobytes() == vector._batch.observations[world].tobytes()
@@ -186,9 +197,10 @@ COPIES = {
 }
 
 
+@pytest.mark.parametrize("seen", SEEN)
 @pytest.mark.parametrize("how", COPIES)
-def test_a_copy_goes_on_alike_and_alone(how):
-    env = begun()
+def test_a_copy_goes_on_alike_and_alone(how, seen):
+    env = begun(**seen)
     twin = COPIES[how](env)
     before = env.snapshot()
     assert twin.snapshot() == before
@@ -197,10 +209,11 @@ def test_a_copy_goes_on_alike_and_alone(how):
     assert play(env, 300, 1) == shown
 
 
+@pytest.mark.parametrize("seen", SEEN)
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("how", ["copy.deepcopy", "pickle"])
-def test_a_copy_of_a_vector_env_goes_on_alike_and_alone(how, mode):
-    env = begun(9, autoreset_mode=mode, threads=2)  # its threads have run
+def test_a_copy_of_a_vector_env_goes_on_alike_and_alone(how, mode, seen):
+    env = begun(9, autoreset_mode=mode, threads=2, **seen)  # its threads have run
     twin = COPIES[how](env)
     before = env.snapshot()
     shown = play(twin, 150, 1)
@@ -304,6 +317,7 @@ def test_snapshots_of_other_versions_are_refused(monkeypatch):
         ({"difficulty": 0.5}, "difficulty is None there, and 0.5 here"),
         ({"levels": ["warden"]}, "of other levels"),
         ({"levels": "train"}, "of other levels"),
+        ({"observation": "rgb"}, "observation is 'vector' there, and 'rgb' here"),
     ],
 )
 def test_snapshots_of_other_configurations_are_refused_by_what_differs(keywords, difference):
@@ -323,6 +337,9 @@ def test_levels_count_by_their_bricks_and_numbers_by_their_values(tmp_path):
     file.write_text("...www.....\n")
     snapshot = begun(levels=str(file), speed=3).snapshot()
     ArkanoidEnv(**LIVELY | {"levels": [str(file)], "speed": np.float64(3.0)}).restore(snapshot)
+    pictures = LIVELY | {"observation": "rgb"}
+    snapshot_of_pictures = begun(observation="rgb", size=16).snapshot()
+    ArkanoidEnv(**pictures, size=[16, 16]).restore(snapshot_of_pictures)
     file.write_text("...www...w.\n")
     with pytest.raises(ValueError, match="of other levels"):
         ArkanoidEnv(**LIVELY | {"levels": str(file)}).restore(snapshot)
