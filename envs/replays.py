@@ -23,10 +23,12 @@ from numpy.typing import NDArray
 
 from ..version import __version__
 from .config import Config
+from .curriculum import MAX_ROUND
+from .generator import MAX_SEED
 from .level_plan import LevelPlan
 from .rules import BRICK_LETTERS, CELLS, RULES_VERSION, TICKS_PER_SECOND
 from .sealed import seal, unseal
-from .state import Level
+from .state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, Level
 
 _MARK = b"ARKAPLAY"
 _FORMAT = 1
@@ -109,9 +111,9 @@ class Replay:
     version: str = __version__
 
     @property
-    def frames_per_second(self) -> int:
+    def frames_per_second(self) -> float:
         """How many frames make a second of the game."""
-        return max(1, TICKS_PER_SECOND // self.config.frame_skip)
+        return TICKS_PER_SECOND / self.config.frame_skip
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write a file; one that is there already is replaced."""
@@ -164,17 +166,38 @@ class Replay:
                 f"{head['version']}, and this release ({__version__}) plays version "
                 f"{RULES_VERSION}: play it with the release that recorded it"
             )
-        return cls(
+        commands = zlib.decompress(content[_LENGTH.size + length :])
+        replay = cls(
             config=Config.from_keywords(head["config"]),
             plan=_read_plan(head["levels"]),
             start=Start(**head["start"]),
-            commands=_unpack_commands(
-                head["palette"], zlib.decompress(content[_LENGTH.size + length :])
-            ),
+            commands=_unpack_commands(head["palette"], commands),
             checksums=tuple(head["checksums"]),
             result=Result(**head["result"]),
             version=head["version"],
         )
+        replay._check()
+        return replay
+
+    def _check(self) -> None:
+        """Refuse with a ValueError what no player could have done: files may come from anyone."""
+        move, fire = self.commands.T
+        illegal = ~((abs(move) <= 1.0) & ((fire == 0.0) | (fire == 1.0)))  # so that NaN is, too
+        if illegal.any():
+            decision = int(illegal.argmax())
+            raise ValueError(f"the command {self.commands[decision]} is illegal")
+        fields, seeds = self.start.fields, self.plan.seeds
+        if tuple(fields) != _START_FIELDS or not (
+            0 < self.start.random < 1 << 64
+            and fields["start"] in (AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED)
+            and 1 <= fields["start_round"] <= MAX_ROUND
+            and 0 <= fields["start_seed"] <= MAX_SEED
+            and -1.0 <= fields["start_difficulty"] <= 1.0
+            and fields["start_boss"] in (0, 1)
+        ):
+            raise ValueError(f"no game begins like this: {self.start}")
+        if not (0 <= seeds.start < seeds.stop <= MAX_SEED + 1 and len(self.plan.table)):
+            raise ValueError("no game has such levels")
 
 
 def _compress(commands: bytes) -> bytes:

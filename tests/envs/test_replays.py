@@ -285,6 +285,29 @@ def test_a_changed_bit_is_noticed(place, bit):
         Replay.from_bytes(bytes(broken))
 
 
+@pytest.mark.parametrize("command", [[np.nan, 0.0], [1.5, 0.0], [0.0, 0.5], [-np.inf, 1.0]])
+def test_commands_that_no_player_could_give_are_refused(command):
+    replay = record(10)
+    commands = replay.commands.copy()
+    commands[3] = command
+    data = dataclasses.replace(replay, commands=commands).to_bytes()
+    with pytest.raises(ValueError, match="is illegal"):
+        Replay.from_bytes(data)
+
+
+@pytest.mark.parametrize(
+    "fields", [{"start": 3}, {"start_round": 0}, {"start_difficulty": 1e9}, {"start_seed": -1}]
+)
+def test_a_beginning_that_no_game_has_is_refused(fields):
+    replay = record(10)
+    start = dataclasses.replace(replay.start, fields=replay.start.fields | fields)
+    with pytest.raises(ValueError, match="no game begins like this"):
+        Replay.from_bytes(dataclasses.replace(replay, start=start).to_bytes())
+    plan = dataclasses.replace(replay.plan, seeds=range(5, 5))
+    with pytest.raises(ValueError, match="no game has such levels"):
+        Replay.from_bytes(dataclasses.replace(replay, plan=plan).to_bytes())
+
+
 def test_files_that_are_no_replays_are_refused_by_their_names(tmp_path):
     path = tmp_path / "some.replay"
     for content in (b"", b"text", GOLDEN.read_bytes()[:-1], GOLDEN.read_bytes() + b"more"):

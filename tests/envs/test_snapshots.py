@@ -2,7 +2,10 @@
 
 import copy
 import pickle
+import subprocess
+import sys
 import zlib
+from pathlib import Path
 
 import arkanoid  # noqa: F401
 import gymnasium as gym
@@ -221,6 +224,20 @@ def test_a_copy_of_a_vector_env_goes_on_alike_and_alone(how, mode, seen):
     assert play(env, 150, 1) == shown
     env.close()
     twin.close()
+
+
+def test_the_example_of_a_search_clears_its_level(tmp_path):
+    """Monte Carlo search with futures that start from snapshots."""
+    example = Path(__file__).parents[2] / "docs" / "examples" / "monte_carlo.py"
+    done = subprocess.run(
+        [sys.executable, "-W", "error", str(example)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1].startswith("cleared, with ")
 
 
 def test_an_env_that_was_never_reset_can_be_copied_but_has_no_state():
