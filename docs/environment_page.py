@@ -161,7 +161,7 @@ def page() -> str:
             ),
         ),
         "",
-        "The parts have names: `env.unwrapped.layout` maps them to slices of the observation's first",
+        "The parts have names. `env.unwrapped.layout` maps them to slices of an observation's first",
         'axis, as in `observation[env.unwrapped.layout["paddle"]]`.',
         "",
         "### `vector`",
@@ -244,8 +244,8 @@ DESCRIPTION = f"""\
 A game in the manner of the arcade's of 1986, with levels and pictures of its own. The player moves
 a paddle at the bottom of a field of {rules.FIELD_WIDTH:g} × {rules.FIELD_HEIGHT:g} brick widths,
 and keeps a ball from falling out; the ball breaks bricks. Where it lands on the paddle decides
-where it flies. Some bricks hide capsules, which give the paddle powers: to catch, to grow, to shoot, to
-slow the ball down, to split it into three, to leave through a gate, to live once more. Enemies come
+where it flies. Some bricks hide capsules, which give the paddle powers: to catch, to grow, to
+shoot, to slow the ball down, to split it into three, to leave through a gate, to live once more. Enemies come
 in through the ceiling and get in the ball's way. After twelve rounds there is a boss, and then
 rounds from a generator without end, harder and harder. [Levels](levels.md) has its page.
 
@@ -275,13 +275,14 @@ alive. A decision of several ticks pays their sum."""
 STARTING_STATE = f"""\
 All bricks of the first round stand, and the ball lies on the paddle in the middle. It is served by
 fire, or by itself after {rules.SERVE_TICKS} ticks, to a side that the seed decides.
-`reset(seed=...)` determines all that follows; a reset without a seed goes on with the random numbers as they are.
+`reset(seed=...)` determines all that follows; a reset without a seed goes on with the random
+numbers as they are.
 `reset(options=...)` says what is played:"""
 
 EPISODE_END = f"""\
 - *Terminated*: the last life is lost.
 - *Truncated*: after `max_decisions` decisions (`info["truncation"]` is {state.DECISION_LIMIT}),
-  or after {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss ({state.IDLE}). 0: neither.
+  or after {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss ({state.IDLE}).
   Both clocks are part of the observation, so that what is cut is foreseeable.
 
 A round that is cleared does not end an episode: the next one begins."""
