@@ -161,7 +161,7 @@ def page() -> str:
             ),
         ),
         "",
-        "The parts have names. `env.unwrapped.layout` maps them to slices of an observation's first",
+        "The parts have names. `env.unwrapped.layout` maps them to slices of observations' first",
         'axis, as in `observation[env.unwrapped.layout["paddle"]]`.',
         "",
         "### `vector`",
@@ -245,8 +245,8 @@ A game in the manner of the arcade's of 1986, with levels and pictures of its ow
 a paddle at the bottom of a field of {rules.FIELD_WIDTH:g} × {rules.FIELD_HEIGHT:g} brick widths,
 and keeps a ball from falling out; the ball breaks bricks. Where it lands on the paddle decides
 where it flies. Some bricks hide capsules, which give the paddle powers: to catch, to grow, to
-shoot, to slow the ball down, to split it into three, to leave through a gate, to live once more. Enemies come
-in through the ceiling and get in the ball's way. After twelve rounds there is a boss, and then
+shoot, to slow the ball down, to split it into three, to leave through a gate, to live once more.
+Enemies come in through the ceiling and get in the ball's way. After twelve rounds there is a boss, and then
 rounds from a generator without end, harder and harder. [Levels](levels.md) has its page.
 
 A tick is 1/{rules.TICKS_PER_SECOND} s. Everything that touches does so at its exact time
