@@ -246,8 +246,8 @@ a paddle at the bottom of a field of {rules.FIELD_WIDTH:g} × {rules.FIELD_HEIGH
 and keeps a ball from falling out; the ball breaks bricks. Where it lands on the paddle decides
 where it flies. Some bricks hide capsules, which give the paddle powers: to catch, to grow, to
 shoot, to slow the ball down, to split it into three, to leave through a gate, to live once more.
-Enemies come in through the ceiling and get in the ball's way. After twelve rounds there is a boss, and then
-rounds from a generator without end, harder and harder. [Levels](levels.md) has its page.
+Enemies come in through the ceiling and get in the ball's way. After twelve rounds there is a boss,
+and then rounds from a generator without end, harder and harder. [Levels](levels.md) has its page.
 
 A tick is 1/{rules.TICKS_PER_SECOND} s. Everything that touches does so at its exact time
 ([the engine](engine.md)): a ball may be arbitrarily fast and passes through nothing. For the same
