@@ -19,6 +19,7 @@ from .interface import (
     check_render_mode,
     instance_metadata,
 )
+from .rules import TICKS_PER_SECOND
 from .snapshots import restore_snapshot, take_snapshot
 from .state import INFO_FIELDS, Outcome
 
@@ -110,7 +111,10 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, uint8 [height, width, 3], in render mode ``"rgb_array"``."""
         if self.render_mode == "rgb_array":
-            return self._frame()
+            # Imported on demand: playing without pictures needs none of the drawing kernels.
+            from .render import draw_world
+
+            return draw_world(self._batch.worlds, self._batch.rules, 0)
         if self.render_mode is None:
             gym.logger.warn(
                 "render() without a render mode: use gym.make(..., render_mode='rgb_array')"
@@ -198,16 +202,17 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     def _info(self, outcome: tuple[Any, ...]) -> dict[str, Any]:
         return dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
 
-    def _frame(self) -> NDArray[np.uint8]:
-        # Imported on demand: playing without pictures needs none of the drawing kernels.
-        from .render import draw_world
-
-        return draw_world(self._batch.worlds, self._batch.rules, 0)
-
     def _show(self) -> None:
-        if self.render_mode == "human":
-            if self._window is None:
-                from .window import Window
+        """Show the game in the window, if there is to be one, and open it at first."""
+        if self.render_mode != "human":
+            return
+        # Imported on demand: playing without pictures needs none of this.
+        from .render import draw_world
+        from .show import screen_height
 
-                self._window = Window("Arkanoid", self.metadata["render_fps"])
-            self._window.show(self._frame())
+        if self._window is None:
+            from .window import Window
+
+            self._window = Window("Arkanoid", TICKS_PER_SECOND / self.config.frame_skip)
+        if not self._window.closed:
+            self._window.show(draw_world(self._batch.worlds, self._batch.rules, 0, screen_height()))
