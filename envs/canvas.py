@@ -61,13 +61,15 @@ def mark(drawn: Any, image: Any, left: float, top: float, right: float, bottom: 
 
 
 @kernel
-def mark_shape(drawn: Any, image: Any, shape: Any, x: float, y: float, scale: float) -> None:
-    """Note the bounding box of a `Shape`, its body at a place in pixels."""
+def mark_shape(
+    drawn: Any, image: Any, shape: Any, x: float, y: float, scale: float, hidden: int
+) -> None:
+    """Note the bounding box of a `Shape`, its body at a place in pixels, below the hidden rows."""
     mark(
         drawn,
         image,
         x + shape.lower_x * scale,
-        y - shape.upper_y * scale,
+        max(float(hidden), y - shape.upper_y * scale),
         x + shape.upper_x * scale,
         y - shape.lower_y * scale,
     )

@@ -80,7 +80,7 @@ def draw_enemies(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) ->
             shape = rules.shapes[ENEMY_SHAPE + world.enemy_kind[enemy]]
             x = view.left + world.enemy_x[enemy] * view.scale
             y = view.bottom - world.enemy_y[enemy] * view.scale
-            mark_shape(drawn, image, shape, x, y, view.scale)
+            mark_shape(drawn, image, shape, x, y, view.scale, hidden)
             _draw_enemy(image[hidden:], sheets, world, rules, enemy, x, y - hidden)
 
 
@@ -113,7 +113,7 @@ def draw_boss(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> No
     scale = view.scale
     x, y = view.left + BOSS_X * scale, view.bottom - BOSS_Y * scale
     shape, edges = rules.shapes[BOSS_SHAPE], rules.edges
-    mark_shape(drawn, image, shape, x, y, scale)
+    mark_shape(drawn, image, shape, x, y, scale, 0)
     step = (BOSS_HITS - world.boss_hits) * BOSS_STEPS // BOSS_HITS
     lit, shaded = palette[BOSS_LIT + step], palette[BOSS_SHADED + step]
     rim, face, brow = palette[BOSS_RIM], palette[BOSS_FACE], palette[BOSS_BROW]
@@ -185,6 +185,6 @@ def draw_shards(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
             continue
         x = view.left + world.shard_x[shard] * scale
         y = view.bottom - world.shard_y[shard] * scale
-        mark_shape(drawn, image, shape, x, y, scale)
+        mark_shape(drawn, image, shape, x, y, scale, 0)
         fill_convex(image, shape, edges, x, y, scale, rim, rim)
         fill_convex(image, shape, edges, x, y, size, body, body)

@@ -7,7 +7,7 @@ from .canvas import copy_bytes
 from .draw_player import draw_capsule
 from .font import count_digits, draw_number, text_step
 from .palette import GRIP_LIT, PADDLE_LIT, PADDLE_SHADED, VALUE
-from .raster import fill_rectangle, fill_rounded_rectangle, last_pixel
+from .raster import fill_rectangle, fill_rounded_rectangle, first_pixel
 from .rules import FIELD_HEIGHT, NO_POWER
 from .scenery import (
     LABEL_HEIGHT,
@@ -41,7 +41,7 @@ def draw_header(image: Any, lines: Any, drawn: Any, sheets: Any, world: Any) -> 
         return
     view = sheets.views[0]
     ceiling = view.bottom - (FIELD_HEIGHT + WALL_WIDTH) * view.scale
-    for row in range(last_pixel(ceiling - 1.0, image.shape[0])):
+    for row in range(first_pixel(ceiling)):
         copy_bytes(lines[row], sheets.background[row])
     drawn.score = world.score
     drawn.lives = world.lives

@@ -66,7 +66,7 @@ def draw_paddle(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
     x, y = view.left + world.paddle_x * scale, view.bottom - PADDLE_Y * scale
     seam = (shape.upper_x - GRIP) * scale
     muzzle = BEAM_PLACE * world.paddle_half * scale if power == LASER else -scale
-    mark_shape(drawn, image, shape, x, y, scale)
+    mark_shape(drawn, image, shape, x, y, scale, 0)
     top, bottom = y - shape.upper_y * scale, y - shape.lower_y * scale
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
         part = min(max((row + 0.5 - top) / (bottom - top), 0.0), 1.0)
