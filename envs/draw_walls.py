@@ -24,7 +24,7 @@ def gate_opening(world: Any, gate: int) -> float:
             return 1.0
     if world.boss_hits > 0 or world.enemy_gate != gate or world.enemy_wait >= GATE_TICKS:
         return 0.0
-    return 1.0 - world.enemy_wait / GATE_TICKS
+    return float(1.0 - world.enemy_wait / GATE_TICKS)
 
 
 @inlined
