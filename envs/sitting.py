@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .batch import Batch
+from .checks import check_integer
 from .config import Config
 from .controls import Controls, Key
+from .generator import MAX_SEED
 from .overlay import draw_overlay
 from .recorder import Recorder
 from .render import draw_world
@@ -67,6 +69,7 @@ class Sitting:
         keep: Callable[[Replay], None],
         height: int,
     ) -> None:
+        check_integer("seed", seed, 0, MAX_SEED)
         self.phase = Phase.READY
         self.ended = False
         self._keep = keep
