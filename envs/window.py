@@ -142,10 +142,13 @@ class Window:
         left = (surface.get_width() - size[0]) // 2
         top = (surface.get_height() - size[1]) // 2
         self._place = (left, top, factor)
-        picture = pygame.surfarray.make_surface(frame.transpose(1, 0, 2))
-        scale = pygame.transform.scale if factor == int(factor) else pygame.transform.smoothscale
+        picture = pygame.image.frombuffer(np.ascontiguousarray(frame), (width, height), "RGB")
+        if size != (width, height):
+            whole = factor == int(factor)
+            scale = pygame.transform.scale if whole else pygame.transform.smoothscale
+            picture = scale(picture, size)
         surface.fill(0)
-        surface.blit(scale(picture, size), (left, top))
+        surface.blit(picture, (left, top))
         self._window.flip()
 
     def _close_asked(self) -> bool:
