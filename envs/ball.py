@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner, kernel
 from ..physics.response import reflect
 from .random import random_sign, uniform_between
 from .rules import (
@@ -23,7 +23,7 @@ from .rules import (
 _FLAT = int(FLAT_ANGLE)
 
 
-@kernel
+@inner
 def ball_speed(world: Any, rules: Any) -> float:
     """Return the speed of the world's balls, per tick."""
     return float(rules.ball_speed * (1.0 + 0.25 * world.speed_stage))
@@ -40,7 +40,7 @@ def direction(rules: Any, degrees: float) -> tuple[float, float]:
     return x / length, y / length
 
 
-@kernel
+@inner
 def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
     """Send a ball along (x, y) != 0 at the rules' speed, and not flatter than the rules allow."""
     length = math.sqrt(x * x + y * y)
@@ -54,7 +54,7 @@ def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
     world.ball_vy[ball] = y * speed
 
 
-@kernel
+@inlined
 def count_hit(world: Any) -> None:
     """Count a ball's hit on a brick: after some of them balls fly faster."""
     world.hits_since_serve += 1
@@ -63,7 +63,7 @@ def count_hit(world: Any) -> None:
             world.speed_stage = min(world.speed_stage + 1, SPEED_STAGE_MAX)
 
 
-@kernel
+@inner
 def bounce_ball(
     world: Any, rules: Any, ball: int, normal_x: float, normal_y: float, damaged: bool
 ) -> None:
@@ -76,7 +76,7 @@ def bounce_ball(
     set_course(world, rules, ball, x, y)
 
 
-@kernel
+@inlined
 def _turn(
     world: Any, rules: Any, x: float, y: float, normal_x: float, normal_y: float
 ) -> tuple[float, float]:
@@ -89,7 +89,7 @@ def _turn(
     return turned_x, turned_y
 
 
-@kernel
+@inlined
 def deflect_ball(
     world: Any, rules: Any, ball: int, paddle_x: float, normal_x: float, normal_y: float
 ) -> bool:
@@ -130,7 +130,7 @@ def deflection(world: Any, rules: Any, offset: float, velocity_x: float) -> tupl
     return side * sine, cosine
 
 
-@kernel
+@inner
 def _recedes(world: Any, ball: int, normal_x: float, normal_y: float) -> bool:
     """Tell whether a ball moves away from the paddle along the normal."""
     return bool(

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ..physics.approach import approach_between
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner
 from ..physics.shape_lattice import sweep_shape_lattice
 from .boss import hit_boss, meet_boss
 from .bricks import hit_brick
@@ -29,7 +29,7 @@ ENEMY = 3
 BOSS = 4
 
 
-@kernel
+@inner
 def remove_beam(world: Any, beam: int) -> None:
     """Take a beam away."""
     world.beams -= world.beam_state[beam] != ABSENT
@@ -38,7 +38,7 @@ def remove_beam(world: Any, beam: int) -> None:
     world.beam_y[beam] = 0.0
 
 
-@kernel
+@inlined
 def remove_beams(world: Any) -> None:
     """Take all beams away; the laser is ready to shoot."""
     for beam in range(MAX_BEAMS):
@@ -46,7 +46,7 @@ def remove_beams(world: Any) -> None:
     world.beam_wait = 0
 
 
-@kernel
+@inlined
 def shoot(world: Any, rules: Any) -> None:
     """Shoot two beams if the laser may and shall."""
     world.beam_wait = max(0, world.beam_wait - 1)
@@ -58,7 +58,7 @@ def shoot(world: Any, rules: Any) -> None:
         _start_beam(world, BEAM_PLACE * world.paddle_half)
 
 
-@kernel
+@inner
 def _start_beam(world: Any, offset: float) -> None:
     """Let a beam start on the paddle, at an offset from its middle."""
     beam = 0
@@ -70,7 +70,7 @@ def _start_beam(world: Any, offset: float) -> None:
     world.beam_y[beam] = PADDLE_TOP + 0.5 * BEAM_HEIGHT
 
 
-@kernel
+@inner
 def fly_beams(world: Any, rules: Any) -> None:
     """Move the beams by one tick, into what they meet."""
     for beam in range(MAX_BEAMS):
@@ -89,7 +89,7 @@ def fly_beams(world: Any, rules: Any) -> None:
             hit_boss(world)
 
 
-@kernel
+@inlined
 def _first_impact(world: Any, rules: Any, x: float, y: float) -> tuple[int, int]:
     """Return what a beam at (x, y) meets first in this tick, and which one."""
     what, index = NOTHING, -1

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from ..physics.approach import approach_between, will_touch
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner
 from .rules import (
     BOSS_POINTS,
     BOSS_X,
@@ -23,7 +23,7 @@ from .state import ABSENT, FLYING
 MOUTH = 1.0
 
 
-@kernel
+@inner
 def meet_boss(
     rules: Any, shape: int, x: float, y: float, vx: float, vy: float, duration: float
 ) -> tuple[float, float, float]:
@@ -33,7 +33,7 @@ def meet_boss(
     )
 
 
-@kernel
+@inner
 def hit_boss(world: Any) -> None:
     """Hit the boss once; after the last hit it is gone, and with it what it has thrown."""
     world.boss_hits -= 1
@@ -43,7 +43,7 @@ def hit_boss(world: Any) -> None:
         remove_shards(world)
 
 
-@kernel
+@inner
 def remove_shard(world: Any, shard: int) -> None:
     """Take a shard away."""
     world.shards -= world.shard_state[shard] != ABSENT
@@ -54,7 +54,7 @@ def remove_shard(world: Any, shard: int) -> None:
     world.shard_vy[shard] = 0.0
 
 
-@kernel
+@inner
 def remove_shards(world: Any) -> None:
     """Take all shards away; the boss waits before it throws again."""
     for shard in range(MAX_SHARDS):
@@ -62,7 +62,7 @@ def remove_shards(world: Any) -> None:
     world.shard_wait = SHARD_TICKS
 
 
-@kernel
+@inlined
 def throw_shards(world: Any) -> None:
     """Let the boss throw a shard at where the paddle is, now and then."""
     world.shard_wait = max(0, world.shard_wait - 1)
@@ -82,7 +82,7 @@ def throw_shards(world: Any) -> None:
     world.shard_wait = SHARD_TICKS
 
 
-@kernel
+@inlined
 def fly_shards(world: Any, rules: Any) -> bool:
     """Move the shards by one tick; return whether one has landed on the moving paddle."""
     landed = False

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner, kernel
 from .capsules import drop_capsule
 from .rules import (
     CELLS,
@@ -29,7 +29,7 @@ def hits_needed(kind: int, round_number: int) -> int:
     return 1
 
 
-@kernel
+@inlined
 def lay_bricks(world: Any) -> None:
     """Lay all bricks of the world's layout, and count the hits that they need."""
     world.needed = 0
@@ -44,7 +44,7 @@ def lay_bricks(world: Any) -> None:
     world.lattice_changed = 1
 
 
-@kernel
+@inner
 def hit_brick(world: Any, rules: Any, cell: int) -> bool:
     """Hit a brick once; return whether it was damaged (gold is not)."""
     if world.brick_hits[cell] == UNBREAKABLE:

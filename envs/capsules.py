@@ -3,7 +3,7 @@
 from typing import Any
 
 from ..physics.approach import will_touch
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner, kernel
 from ..physics.lattice import cell_centre
 from .powers import take_capsule
 from .random import uniform
@@ -31,7 +31,7 @@ from .serve import balls_in_play
 from .shapes import CAPSULE_SHAPE
 
 
-@kernel
+@inlined
 def drop_capsule(world: Any, rules: Any, cell: int) -> None:
     """Let a capsule fall from a broken brick, if it hid one and none may distract from it."""
     if world.capsule != NO_CAPSULE or balls_in_play(world) != 1:
@@ -41,7 +41,7 @@ def drop_capsule(world: Any, rules: Any, cell: int) -> None:
         world.capsule_x, world.capsule_y = cell_centre(rules.lattice[0], cell)
 
 
-@kernel
+@inlined
 def _draw_capsule(world: Any) -> int:
     """Draw a capsule that the player does not own already."""
     kind = capsule_by_weight(uniform(world))
@@ -69,7 +69,7 @@ def capsule_by_weight(number: float) -> int:
     return LASER
 
 
-@kernel
+@inlined
 def fall_capsule(world: Any, rules: Any) -> None:
     """Move the falling capsule by one tick: into the moving paddle, or out of the field."""
     if will_touch(
@@ -94,7 +94,7 @@ def fall_capsule(world: Any, rules: Any) -> None:
         remove_capsule(world)
 
 
-@kernel
+@inner
 def remove_capsule(world: Any) -> None:
     """Take the falling capsule away, if there is one."""
     world.capsule = NO_CAPSULE

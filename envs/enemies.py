@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from ..physics.approach import approach_between, will_touch
-from ..physics.compilation import inlined, kernel
+from ..physics.compilation import inlined, inner
 from ..physics.dispatch import overlap_between
 from ..physics.response import reflect
 from ..physics.shape_lattice import sweep_shape_lattice
@@ -41,7 +41,7 @@ ABOVE = FIELD_HEIGHT + 0.4
 BELOW = -1.0
 
 
-@kernel
+@inner
 def remove_enemy(world: Any, enemy: int) -> None:
     """Take an enemy away."""
     world.enemies -= world.enemy_state[enemy] != ABSENT
@@ -57,7 +57,7 @@ def remove_enemy(world: Any, enemy: int) -> None:
     world.enemy_clock[enemy] = 0
 
 
-@kernel
+@inlined
 def remove_enemies(world: Any) -> None:
     """Take all enemies away, and draw when and where the next one comes in."""
     for enemy in range(MAX_ENEMIES):
@@ -65,14 +65,14 @@ def remove_enemies(world: Any) -> None:
     _draw_gate(world)
 
 
-@kernel
+@inner
 def _draw_gate(world: Any) -> None:
     """Draw when and through which gate the next enemy comes in."""
     world.enemy_wait = int(uniform_between(world, ENEMY_TICKS_MIN, ENEMY_TICKS_MAX))
     world.enemy_gate = int(uniform(world) * GATES)
 
 
-@kernel
+@inner
 def destroy_enemy(world: Any, enemy: int) -> None:
     """Let the player have destroyed an enemy."""
     remove_enemy(world, enemy)
@@ -80,7 +80,7 @@ def destroy_enemy(world: Any, enemy: int) -> None:
     add_score(world, ENEMY_POINTS)
 
 
-@kernel
+@inlined
 def open_gates(world: Any) -> None:
     """Count down to the next enemy, and let it in; no gate opens while there are enough."""
     if world.enemies < MAX_ENEMIES or world.enemy_wait > GATE_TICKS:
@@ -99,7 +99,7 @@ def open_gates(world: Any) -> None:
     _draw_gate(world)
 
 
-@kernel
+@inner
 def steer_enemies(world: Any, rules: Any) -> None:
     """Plan each enemy's motion of this tick.
 
@@ -116,7 +116,7 @@ def steer_enemies(world: Any, rules: Any) -> None:
             _fly(world, rules, enemy)
 
 
-@kernel
+@inlined
 def _drift(world: Any, rules: Any, enemy: int) -> None:
     """Go down if there is a way, or else sideways, and turn round where that ends."""
     shape = ENEMY_SHAPE + world.enemy_kind[enemy]
@@ -145,7 +145,7 @@ def _drift(world: Any, rules: Any, enemy: int) -> None:
     world.enemy_vy[enemy] = y * speed * part
 
 
-@kernel
+@inlined
 def _fly(world: Any, rules: Any, enemy: int) -> None:
     """Circle for a while, and turn the other way off what bars it; then dive."""
     x, y = world.enemy_course_x[enemy], world.enemy_course_y[enemy]
@@ -174,7 +174,7 @@ def _fly(world: Any, rules: Any, enemy: int) -> None:
     world.enemy_course_y[enemy] = y
 
 
-@kernel
+@inner
 def _free_way(
     world: Any, rules: Any, enemy: int, vx: float, vy: float
 ) -> tuple[float, float, float]:
@@ -237,7 +237,7 @@ def _first_obstacle(
     return time, normal_x, normal_y
 
 
-@kernel
+@inner
 def meet_enemies(
     world: Any,
     rules: Any,
@@ -275,7 +275,7 @@ def meet_enemies(
     return time, normal_x, normal_y, first
 
 
-@kernel
+@inlined
 def move_enemies(world: Any, rules: Any) -> None:
     """Move the enemies by one tick: on, into the moving paddle, or out of the field."""
     for enemy in range(MAX_ENEMIES):

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import inlined, kernel
+from ..physics.compilation import inlined, inner
 from .beams import remove_beams
 from .boss import remove_shards
 from .bricks import lay_bricks
@@ -52,7 +52,7 @@ def begin_episode(world: Any, rules: Any, levels: Any) -> None:
     _lay_round(world, rules, world.start_boss)
 
 
-@kernel
+@inner
 def begin_round(world: Any, rules: Any, levels: Any) -> None:
     """Begin the round of the world's number: a level of the table, or a generated one."""
     index = world.round_number - 1
@@ -69,17 +69,17 @@ def begin_round(world: Any, rules: Any, levels: Any) -> None:
     _lay_round(world, rules, boss)
 
 
-@kernel
+@inner
 def _difficulty(world: Any, rules: Any, generated: int) -> float:
     """Return the difficulty of a generated round, of which there were so many before."""
     if world.start_difficulty >= 0.0:
         return float(world.start_difficulty)
     if rules.difficulty >= 0.0:
         return float(rules.difficulty)
-    return min(1.0, rules.first_difficulty + DIFFICULTY_STEP * generated)
+    return float(min(1.0, rules.first_difficulty + DIFFICULTY_STEP * generated))
 
 
-@kernel
+@inner
 def _lay_round(world: Any, rules: Any, boss: int) -> None:
     """Lay the bricks of the world's layout, and the ball."""
     world.cleared = 0
@@ -90,7 +90,7 @@ def _lay_round(world: Any, rules: Any, boss: int) -> None:
     _begin_serve(world, rules)
 
 
-@kernel
+@inner
 def _begin_serve(world: Any, rules: Any) -> None:
     """Lay a ball on the paddle, and take away all that flies."""
     lay_ball(world)
@@ -102,7 +102,7 @@ def _begin_serve(world: Any, rules: Any) -> None:
         remove_enemies(world)
 
 
-@kernel
+@inner
 def lose_life(world: Any, rules: Any) -> None:
     """Take a life and the powers; with the next one the round goes on, its bricks as they are."""
     world.lives -= 1

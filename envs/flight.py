@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from ..physics.approach import approach_between
-from ..physics.compilation import inlined, kernel
+from ..physics.compilation import inlined, inner
 from ..physics.disc_half_plane import sweep_disc_half_plane
 from ..physics.dispatch import contact_between, may_touch
 from ..physics.lattice import sweep_disc_lattice
@@ -70,7 +70,7 @@ def _meet_paddle(
     )
 
 
-@kernel
+@inner
 def _first_impact(
     world: Any, rules: Any, ball: int, duration: float, paddle_counts: bool
 ) -> tuple[float, float, float, int, int]:
@@ -129,7 +129,7 @@ def fly_balls(world: Any, rules: Any) -> None:
             fly_ball(world, rules, ball)
 
 
-@kernel
+@inner
 def fly_ball(world: Any, rules: Any, ball: int) -> None:
     """Move a flying ball by one tick, through all that it meets."""
     remaining = 1.0

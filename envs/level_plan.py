@@ -49,9 +49,9 @@ def plan_levels(config: "Config") -> LevelPlan:
     if seeds is not None:
         return LevelPlan((), np.zeros(1, Level), seeds, True, 0.0)
     if config.levels == "campaign":
-        names = CAMPAIGN if config.enemies else CAMPAIGN[:-1]  # without enemies there is no boss
-        return LevelPlan(names, level_table(names), TRAIN_SEEDS, True, DIFFICULTY_AFTER_CAMPAIGN)
-    names = (config.levels,) if isinstance(config.levels, str) else tuple(config.levels)
+        rounds = CAMPAIGN if config.enemies else CAMPAIGN[:-1]  # without enemies there is no boss
+        return LevelPlan(rounds, level_table(rounds), TRAIN_SEEDS, True, DIFFICULTY_AFTER_CAMPAIGN)
+    names = (config.levels,) if isinstance(config.levels, str) else tuple(map(str, config.levels))
     table = level_table(names)
     for name in names:
         check_boss(config, name)

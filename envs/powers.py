@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner
 from .ball import direction, set_course
 from .paddle import keep_paddle_inside
 from .rules import (
@@ -23,7 +23,7 @@ from .shapes import LONG_PADDLE_SHAPE, PADDLE_SHAPE
 from .state import ABSENT, FLYING, HELD
 
 
-@kernel
+@inner
 def take_capsule(world: Any, rules: Any, kind: int) -> None:
     """Give the player what a capsule brings."""
     if kind <= POWERS:
@@ -38,7 +38,7 @@ def take_capsule(world: Any, rules: Any, kind: int) -> None:
         gain_lives(world, 1)
 
 
-@kernel
+@inner
 def set_power(world: Any, rules: Any, power: int) -> None:
     """Give the paddle a power (or `NO_POWER`) in place of the one that it has."""
     world.power = power
@@ -51,7 +51,7 @@ def set_power(world: Any, rules: Any, power: int) -> None:
     keep_paddle_inside(world)
 
 
-@kernel
+@inlined
 def _slow_balls(world: Any, rules: Any) -> None:
     """Take two from the speed stage, at once."""
     world.speed_stage = max(SPEED_STAGE_MIN, world.speed_stage - SLOW_STAGES)
@@ -60,7 +60,7 @@ def _slow_balls(world: Any, rules: Any) -> None:
             set_course(world, rules, ball, world.ball_vx[ball], world.ball_vy[ball])
 
 
-@kernel
+@inlined
 def _disrupt_ball(world: Any, rules: Any) -> None:
     """Make three balls of one; one that lies on the paddle is served first."""
     source = 0

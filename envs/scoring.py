@@ -2,18 +2,18 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inner
 from .rules import EXTRA_LIFE_EVERY
 
 
-@kernel
+@inner
 def gain_lives(world: Any, lives: int) -> None:
     """Add lives."""
     world.lives += lives
     world.lives_gained += lives
 
 
-@kernel
+@inner
 def add_score(world: Any, points: int) -> None:
     """Add points, and a life for each threshold that they pass."""
     world.score += points
@@ -24,7 +24,7 @@ def add_score(world: Any, points: int) -> None:
         world.next_life += gained * EXTRA_LIFE_EVERY
 
 
-@kernel
+@inner
 def count_damage(world: Any) -> None:
     """Count one of the hits that clear the round."""
     world.hits_left -= 1

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner, kernel
 from .ball import deflection, direction, set_course
 from .random import random_sign, uniform_between
 from .rules import (
@@ -17,7 +17,7 @@ from .rules import (
 from .state import ABSENT, FLYING, HELD
 
 
-@kernel
+@inner
 def balls_in_play(world: Any) -> int:
     """Return how many balls there are."""
     count = 0
@@ -26,7 +26,7 @@ def balls_in_play(world: Any) -> int:
     return count
 
 
-@kernel
+@inner
 def remove_ball(world: Any, ball: int) -> None:
     """Take a ball away."""
     world.ball_state[ball] = ABSENT
@@ -40,7 +40,7 @@ def remove_ball(world: Any, ball: int) -> None:
     world.ball_bounces[ball] = 0
 
 
-@kernel
+@inner
 def copy_ball(world: Any, source: int, ball: int) -> None:
     """Make a flying ball where another one flies."""
     remove_ball(world, ball)
@@ -49,7 +49,7 @@ def copy_ball(world: Any, source: int, ball: int) -> None:
     world.ball_y[ball] = world.ball_y[source]
 
 
-@kernel
+@inner
 def lay_ball(world: Any) -> None:
     """Lay one ball on the paddle's middle, and take every other ball away."""
     for ball in range(MAX_BALLS):
@@ -61,7 +61,7 @@ def lay_ball(world: Any) -> None:
     carry_balls(world)
 
 
-@kernel
+@inlined
 def catch_ball(world: Any, ball: int, paddle_x: float) -> None:
     """Let a ball that has landed on the paddle (its middle at paddle_x) stick there."""
     offset = world.ball_x[ball] - paddle_x
@@ -85,7 +85,7 @@ def carry_balls(world: Any) -> None:
             world.ball_y[ball] = PADDLE_TOP + BALL_RADIUS
 
 
-@kernel
+@inlined
 def release_balls(world: Any, rules: Any) -> None:
     """Let the held balls go on fire, or when they have lain long enough."""
     for ball in range(MAX_BALLS):
@@ -95,7 +95,7 @@ def release_balls(world: Any, rules: Any) -> None:
                 release_ball(world, rules, ball)
 
 
-@kernel
+@inner
 def release_ball(world: Any, rules: Any, ball: int) -> None:
     """Serve a held ball, or send a caught one off by where it lies."""
     if world.ball_caught[ball] == 1:

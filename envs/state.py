@@ -99,7 +99,8 @@ World = np.dtype(
             ("enemy_y", np.float64, (MAX_ENEMIES,)),
             ("enemy_vx", np.float64, (MAX_ENEMIES,)),  # of the latest tick
             ("enemy_vy", np.float64, (MAX_ENEMIES,)),
-            ("enemy_course_x", np.float64, (MAX_ENEMIES,)),  # unit vector, while it circles or dives
+            # Its course as a unit vector, while it circles or dives.
+            ("enemy_course_x", np.float64, (MAX_ENEMIES,)),
             ("enemy_course_y", np.float64, (MAX_ENEMIES,)),
             ("enemy_side", np.float64, (MAX_ENEMIES,)),  # -1 or 1: where it goes next, or turns
             ("enemy_clock", np.int64, (MAX_ENEMIES,)),  # ticks since it circles

@@ -34,6 +34,7 @@ import numba
 import platformdirs
 from numba.core import event
 from numba.core.caching import FunctionCache
+from numba.core.registry import CPUDispatcher
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -58,7 +59,35 @@ def kernel(function: F) -> F:
     """
     if numba.config.DISABLE_JIT:
         return function
-    compiled: F = numba.njit(function, nogil=True, error_model="numpy")
+    return _compile(function)
+
+
+def inner(function: F) -> F:
+    """Make a kernel that only kernels may call: compiled without the way in from Python.
+
+    That way, through which every argument is taken apart, is a good part of a small kernel's code.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled = _compile(function, no_cpython_wrapper=True)
+    compiled.__class__ = _Inner
+    return compiled
+
+
+class _Inner(CPUDispatcher):  # type: ignore[misc]
+    """A kernel that has no way in from Python."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Refuse; without this, the process would crash."""
+        raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
+
+
+def _compile(function: F, **options: bool) -> F:
+    """Return the dispatcher of a function, with its cache."""
+    # No C function either, which nobody calls.
+    compiled: F = numba.njit(
+        function, nogil=True, error_model="numpy", no_cfunc_wrapper=True, **options
+    )
     _compile_once_for_literals(compiled)
     folder = cache_folder(Path(function.__code__.co_filename))
     if folder is not None and _prepared(folder):

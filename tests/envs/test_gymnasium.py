@@ -275,7 +275,7 @@ def test_velocities_move_the_paddle_and_fire_serves():
 def test_info_counts_what_happened_in_the_step():
     """Over an episode the steps' events add up to what the game's state says."""
     env = ArkanoidVectorEnv(
-        8, autoreset_mode="Disabled", capsule_rate=1.0, lives=60, speed=2.0, levels="seeds:0-99"
+        8, autoreset_mode="Disabled", capsule_rate=1.0, lives=1000, speed=2.0, levels="seeds:0-99"
     )
     reset_infos = env.reset(seed=0)[1]
     keys = ["hits", "bricks_broken", "capsules_caught", "enemies_destroyed"]
@@ -296,4 +296,4 @@ def test_info_counts_what_happened_in_the_step():
         gained = sums["lives_gained"] - sums["lives_lost"]
         assert (lives + gained == infos["lives"]).all()
         assert (sums["rounds_cleared"] == infos["round"] - 1).all()
-    assert all(sums[key].sum() > 0 for key in keys if key not in ("lives_gained", "rounds_cleared"))
+    assert all(sums[key].sum() > 0 for key in keys[:5]), sums

@@ -322,6 +322,36 @@ def total(number):
     assert sorted(run.compiled) == ["power", "total"]
 
 
+def test_an_inner_kernel_serves_kernels_and_refuses_python(scratch: Scratch) -> None:
+    """It has no way in from Python: Numba would call a null pointer."""
+    scratch.write(
+        "inside.py",
+        """
+from arkanoid.physics.compilation import inner, kernel
+
+@inner
+def doubled(number):
+    return number + number
+
+@kernel
+def quadrupled(number):
+    return doubled(doubled(number))
+""",
+    )
+    program = """
+from inside import doubled, quadrupled
+try:
+    doubled(1)
+except TypeError as error:
+    report([quadrupled(2.5), str(error)])
+"""
+    for compiled in (["doubled", "quadrupled"], []):
+        run = scratch.run(program)
+        assert run.result[0] == 10.0
+        assert run.result[1].startswith("doubled can be called by kernels only")
+        assert sorted(run.compiled) == compiled
+
+
 def test_processes_may_compile_at_the_same_time(scratch: Scratch) -> None:
     with ThreadPoolExecutor() as pool:
         outcomes = list(pool.map(lambda _: scratch.run(), range(4)))
