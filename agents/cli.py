@@ -40,7 +40,8 @@ _EXTRAS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status.
 
-    0: done; 1: an extra is missing; 2: the user's mistake; 130: Ctrl-C.
+    0: done; 1: an extra is missing, or a replay is not what was played; 2: the user's mistake;
+    130: Ctrl-C.
     """
     words = list(sys.argv[1:] if argv is None else argv)
     overrides: list[tuple[str, str]] = []
