@@ -9,14 +9,25 @@ import sys
 from collections.abc import Sequence
 from types import ModuleType
 
+from gymnasium.error import DependencyNotInstalled
+
 from .. import __version__
-from . import evaluate, train
+from . import evaluate, play, show_levels, show_replay, train
 from .schema import SettingsError
 
-COMMANDS: dict[str, ModuleType] = {"train": train, "evaluate": evaluate}
+COMMANDS: dict[str, ModuleType] = {
+    "play": play,
+    "replay": show_replay,
+    "levels": show_levels,
+    "train": train,
+    "evaluate": evaluate,
+}
+# These take no settings, ``--key value``: all their options are argparse's.
+_WITHOUT_SETTINGS = {"play", "replay", "levels"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
+    "PIL": "train",
     "imageio": "train",
     "stable_baselines3": "train",
     "tensorboard": "train",
@@ -29,14 +40,20 @@ _EXTRAS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status.
 
-    0: done; 1: an extra is missing; 2: the user's mistake; 130: Ctrl-C.
+    0: done; 1: an extra is missing, or a replay is not what was played; 2: the user's mistake;
+    130: Ctrl-C.
     """
-    words, overrides = split_overrides(sys.argv[1:] if argv is None else argv)
+    words = list(sys.argv[1:] if argv is None else argv)
+    overrides: list[tuple[str, str]] = []
+    if not words or words[0] not in _WITHOUT_SETTINGS:
+        words, overrides = split_overrides(words)
     arguments = _parser().parse_args(words)
     try:
         status: int = COMMANDS[arguments.command].run(arguments, overrides)
     except SettingsError as error:
         return _fail(str(error), 2)
+    except DependencyNotInstalled as error:
+        return _fail(str(error), 1)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
     except ModuleNotFoundError as error:
@@ -74,7 +91,7 @@ _FLAGS = {"--help", "--version", "--json"}
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="arkanoid", description="Agents for Arkanoid.")
+    parser = argparse.ArgumentParser(prog="arkanoid", description="Arkanoid, and agents for it.")
     parser.add_argument("--version", action="version", version=__version__)
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, module in COMMANDS.items():

@@ -1,22 +1,35 @@
 """The game and its Gymnasium environments, on nothing but the engine."""
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .arkanoid_env import ArkanoidEnv
+    from .playback import ReplayDivergedError, play_replay, replay_frames
+    from .replays import Replay
     from .vector_env import ArkanoidVectorEnv
 
-__all__ = ["ArkanoidEnv", "ArkanoidVectorEnv"]
+__all__ = [
+    "ArkanoidEnv",
+    "ArkanoidVectorEnv",
+    "Replay",
+    "ReplayDivergedError",
+    "play_replay",
+    "replay_frames",
+]
+
+_HOMES = {
+    "ArkanoidEnv": "arkanoid_env",
+    "ArkanoidVectorEnv": "vector_env",
+    "Replay": "replays",
+    "ReplayDivergedError": "playback",
+    "play_replay": "playback",
+    "replay_frames": "playback",
+}
 
 
 def __getattr__(name: str) -> Any:
     # Lazily, for registering the environments needs none of the kernels.
-    if name == "ArkanoidEnv":
-        from .arkanoid_env import ArkanoidEnv
-
-        return ArkanoidEnv
-    if name == "ArkanoidVectorEnv":
-        from .vector_env import ArkanoidVectorEnv
-
-        return ArkanoidVectorEnv
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_HOMES[name]}", __name__), name)

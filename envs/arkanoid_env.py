@@ -1,5 +1,6 @@
 """`ArkanoidEnv`: one game as a Gymnasium environment. It is a batch of one world."""
 
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -7,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .batch import COMMANDS, Batch
+from .checks import check_integer
 from .config import Config
+from .generator import MAX_SEED
 from .interface import (
     METADATA,
     RENDER_MODES,
@@ -16,22 +19,25 @@ from .interface import (
     check_render_mode,
     instance_metadata,
 )
-from .observation import LAYOUT, vector_space
+from .rules import TICKS_PER_SECOND
+from .snapshots import restore_snapshot, take_snapshot
 from .state import INFO_FIELDS, Outcome
 
 if TYPE_CHECKING:
+    from .recorder import Recorder
     from .window import Window
 
-Observation = NDArray[np.float32]
+Observation = NDArray[Any]
 
 _REWARD = Outcome.names.index("reward")  # type: ignore[union-attr]
 _TERMINATED = Outcome.names.index("terminated")  # type: ignore[union-attr]
 _TRUNCATED = Outcome.names.index("truncated")  # type: ignore[union-attr]
-_INFO = [(key, Outcome.names.index(field)) for key, field in INFO_FIELDS.items()]  # type: ignore[union-attr]
+_INFO = [Outcome.names.index(field) for field in INFO_FIELDS.values()]  # type: ignore[union-attr]
+_info_values = itemgetter(*_INFO)
 _ALL = np.ones(1, np.bool_)
 
 
-class ArkanoidEnv(gym.Env[Observation, np.int64]):
+class ArkanoidEnv(gym.Env[Observation, Any]):
     """One game of Arkanoid.
 
     Args:
@@ -50,38 +56,48 @@ class ArkanoidEnv(gym.Env[Observation, np.int64]):
         self.config = Config.from_keywords(keywords)
         self.render_mode = render_mode
         self.metadata = instance_metadata(self.config)
-        self.observation_space = vector_space()
-        self.action_space = action_space(self.config)
-        self.layout = LAYOUT
         self._batch = Batch(1, self.config)
-        self._commands = COMMANDS[self.config.actions]
-        self._actions = len(self._commands)
-        self._seeded = False
+        self.observation_space = self._batch.observer.space
+        self.action_space = action_space(self.config)
+        self.layout = self._batch.observer.layout
+        table = COMMANDS.get(self.config.actions)
+        # As Python's numbers, which are put into an array faster than a row of another array is.
+        self._commands = None if table is None else table.tolist()
         self._window: Window | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode; a seed determines all that follows, no seed goes on as it was."""
+        """Begin an episode; a seed determines all that follows, no seed goes on as it was.
+
+        Args:
+            seed: of the game's random numbers.
+            options: how this and the following episodes begin: ``"level"`` (a name or path, or the
+                number of a round), ``"seed"`` (of a generated level; not the game's) and
+                ``"difficulty"``; see `curriculum`.
+        """
         super().reset(seed=seed)
         check_options(options)
-        if seed is None and not self._seeded:
+        if seed is None and not self._batch.seeded[0]:
             seed = int(self.np_random.integers(1 << 62))
         if seed is not None:
             self._batch.seed(0, seed)
-            self._seeded = True
-        self._batch.reset(_ALL)
+        self._batch.reset(_ALL, options)
         self._show()
-        return self._batch.observations[0].copy(), self._info(self._batch.outcomes[0].item())
+        return self._shown()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one decision."""
         batch = self._batch
-        if not 0 <= action < self._actions:
+        if self._commands is None:
+            batch.command(np.asarray(action)[np.newaxis])
+        elif 0 <= action < len(self._commands):
+            batch.commands[0, 0], batch.commands[0, 1] = self._commands[action]
+        else:
             raise ValueError(f"action {action!r} is not in {self.action_space}")
-        batch.commands[0] = self._commands[action]
         batch.step()
-        outcome = batch.outcomes[0].item()
+        # An element of a structured array would be slower to make than all of them as tuples.
+        (outcome,) = batch.outcomes.tolist()
         if self.render_mode == "human":
             self._show()
         return (
@@ -95,12 +111,83 @@ class ArkanoidEnv(gym.Env[Observation, np.int64]):
     def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, uint8 [height, width, 3], in render mode ``"rgb_array"``."""
         if self.render_mode == "rgb_array":
-            return self._frame()
+            # Imported on demand: playing without pictures needs none of the drawing kernels.
+            from .render import draw_world
+
+            return draw_world(self._batch.worlds, self._batch.rules, 0)
         if self.render_mode is None:
             gym.logger.warn(
                 "render() without a render mode: use gym.make(..., render_mode='rgb_array')"
             )
         return None
+
+    def snapshot(self) -> bytes:
+        """Return the whole state, random numbers included, to go on from with `restore`.
+
+        What wrappers count is not in it, `TimeLimit`'s steps, say; a deep copy of the wrapped
+        environment has that, too.
+
+        Raises:
+            RuntimeError: the environment was never reset.
+        """
+        return take_snapshot(self._batch)
+
+    def restore(self, snapshot: bytes) -> tuple[Observation, dict[str, Any]]:
+        """Go on from a snapshot, and return the observation and the info that were the latest then.
+
+        It may be of this environment, of another one of the same configuration, or of one world of
+        a vector environment of the same configuration.
+
+        Raises:
+            TypeError: it is not bytes.
+            ValueError: it is corrupt, of another version, configuration or other levels, or has
+                several worlds; the environment is as it was then.
+        """
+        restore_snapshot(self._batch, snapshot)
+        self._show()
+        return self._shown()
+
+    def clone(self, seed: int | None = None) -> "ArkanoidEnv":
+        """Return an independent environment in the same state, for planning: it takes some µs.
+
+        Only what never changes is shared, and the spaces; `copy.deepcopy` shares nothing. A clone
+        has no window.
+
+        Args:
+            seed: of the clone's random numbers from here on. None: it has the same ones ahead, so
+                that a planner sees what luck will bring.
+        """
+        clone = object.__new__(type(self))
+        clone.__dict__.update(self.__dict__)
+        clone._batch = self._batch.clone()
+        clone._window = None
+        if clone.render_mode == "human":
+            clone.render_mode = None
+        if seed is not None:
+            check_integer("seed", seed, 0, MAX_SEED)
+            clone._batch.seed(0, seed)
+        return clone
+
+    def record(self) -> "Recorder":
+        """Begin to record games, for replays: from the next reset on, or the one just made."""
+        # Imported on demand: most play is not recorded.
+        from .recorder import Recorder
+
+        return Recorder(self._batch, 0)
+
+    def get_keys_to_action(self) -> dict[tuple[int, ...], Any]:
+        """Return the action of each combination of keys: ``gymnasium.utils.play.play`` asks for it.
+
+        Arrows or A and D move, space fires. With ``actions="box"`` play() also needs
+        ``noop=numpy.zeros(2, numpy.float32)``, for its own is the number 0.
+        """
+        from .controls import keys_to_action
+
+        return keys_to_action(self.config)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A copy opens a window of its own.
+        return self.__dict__ | {"_window": None}
 
     def close(self) -> None:
         """Close the window, if there is one."""
@@ -108,19 +195,24 @@ class ArkanoidEnv(gym.Env[Observation, np.int64]):
             self._window.close()
             self._window = None
 
+    def _shown(self) -> tuple[Observation, dict[str, Any]]:
+        """Return the present observation and info."""
+        return self._batch.observations[0].copy(), self._info(self._batch.outcomes.tolist()[0])
+
     def _info(self, outcome: tuple[Any, ...]) -> dict[str, Any]:
-        return {key: outcome[index] for key, index in _INFO}
-
-    def _frame(self) -> NDArray[np.uint8]:
-        # Imported on demand: playing without pictures needs none of the drawing kernels.
-        from .render import draw_world
-
-        return draw_world(self._batch.worlds, self._batch.rules, self._batch.levels, 0)
+        return dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
 
     def _show(self) -> None:
-        if self.render_mode == "human":
-            if self._window is None:
-                from .window import Window
+        """Show the game in the window, if there is to be one, and open it at first."""
+        if self.render_mode != "human":
+            return
+        # Imported on demand: playing without pictures needs none of this.
+        from .render import draw_world
+        from .show import screen_height
 
-                self._window = Window("Arkanoid", self.metadata["render_fps"])
-            self._window.show(self._frame())
+        if self._window is None:
+            from .window import Window
+
+            self._window = Window("Arkanoid", TICKS_PER_SECOND / self.config.frame_skip)
+        if not self._window.closed:
+            self._window.show(draw_world(self._batch.worlds, self._batch.rules, 0, screen_height()))

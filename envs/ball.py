@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner, kernel
 from ..physics.response import reflect
 from .random import random_sign, uniform_between
 from .rules import (
@@ -14,6 +14,8 @@ from .rules import (
     LOOP_TURN_MAX,
     LOOP_TURN_MIN,
     PHYSICAL,
+    SPEED_STAGE_HITS,
+    SPEED_STAGE_MAX,
     ZONE_ANGLES,
     ZONES6,
 )
@@ -21,7 +23,7 @@ from .rules import (
 _FLAT = int(FLAT_ANGLE)
 
 
-@kernel
+@inner
 def ball_speed(world: Any, rules: Any) -> float:
     """Return the speed of the world's balls, per tick."""
     return float(rules.ball_speed * (1.0 + 0.25 * world.speed_stage))
@@ -38,7 +40,7 @@ def direction(rules: Any, degrees: float) -> tuple[float, float]:
     return x / length, y / length
 
 
-@kernel
+@inner
 def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
     """Send a ball along (x, y) != 0 at the rules' speed, and not flatter than the rules allow."""
     length = math.sqrt(x * x + y * y)
@@ -52,7 +54,16 @@ def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
     world.ball_vy[ball] = y * speed
 
 
-@kernel
+@inlined
+def count_hit(world: Any) -> None:
+    """Count a ball's hit on a brick: after some of them balls fly faster."""
+    world.hits_since_serve += 1
+    for index in range(len(SPEED_STAGE_HITS)):
+        if world.hits_since_serve == SPEED_STAGE_HITS[index]:
+            world.speed_stage = min(world.speed_stage + 1, SPEED_STAGE_MAX)
+
+
+@inner
 def bounce_ball(
     world: Any, rules: Any, ball: int, normal_x: float, normal_y: float, damaged: bool
 ) -> None:
@@ -65,7 +76,7 @@ def bounce_ball(
     set_course(world, rules, ball, x, y)
 
 
-@kernel
+@inlined
 def _turn(
     world: Any, rules: Any, x: float, y: float, normal_x: float, normal_y: float
 ) -> tuple[float, float]:
@@ -78,7 +89,7 @@ def _turn(
     return turned_x, turned_y
 
 
-@kernel
+@inlined
 def deflect_ball(
     world: Any, rules: Any, ball: int, paddle_x: float, normal_x: float, normal_y: float
 ) -> bool:
@@ -93,7 +104,7 @@ def deflect_ball(
         )
         set_course(world, rules, ball, x + world.paddle_vx, y)
     else:
-        x, y = _deflection(rules, world.ball_x[ball] - paddle_x, world.ball_vx[ball])
+        x, y = deflection(world, rules, world.ball_x[ball] - paddle_x, world.ball_vx[ball])
         set_course(world, rules, ball, x, y)
     if not _recedes(world, ball, normal_x, normal_y):
         set_course(world, rules, ball, normal_x, normal_y)
@@ -101,13 +112,13 @@ def deflect_ball(
 
 
 @kernel
-def _deflection(rules: Any, offset: float, velocity_x: float) -> tuple[float, float]:
+def deflection(world: Any, rules: Any, offset: float, velocity_x: float) -> tuple[float, float]:
     """Return the unit direction in which a ball leaves the paddle's upper side, by where it lands.
 
     Args:
         offset: of the ball from the paddle's middle; velocity_x: with which the ball came.
     """
-    u = max(-1.0, min(1.0, offset / rules.paddle_half))
+    u = max(-1.0, min(1.0, offset / world.paddle_half))
     if rules.deflection == ZONES6:
         degrees = ZONE_ANGLES[min(int((1.0 - u) * 3.0), 5)]
         side = 1.0 if degrees > 0.0 else -1.0
@@ -119,7 +130,7 @@ def _deflection(rules: Any, offset: float, velocity_x: float) -> tuple[float, fl
     return side * sine, cosine
 
 
-@kernel
+@inner
 def _recedes(world: Any, ball: int, normal_x: float, normal_y: float) -> bool:
     """Tell whether a ball moves away from the paddle along the normal."""
     return bool(

@@ -2,20 +2,19 @@
 
 from typing import Any
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inlined, inner, kernel
+from .capsules import drop_capsule
 from .rules import (
     CELLS,
     COLOUR_POINTS,
     COLOURS,
     EMPTY,
-    EXTRA_LIFE_EVERY,
     GOLD,
     SILVER,
     SILVER_POINTS,
-    SPEED_STAGE_HITS,
-    SPEED_STAGE_MAX,
     UNBREAKABLE,
 )
+from .scoring import add_score, count_damage
 
 
 @kernel
@@ -30,13 +29,13 @@ def hits_needed(kind: int, round_number: int) -> int:
     return 1
 
 
-@kernel
-def lay_bricks(world: Any, level: Any) -> None:
-    """Begin the world's round with all bricks of its level."""
+@inlined
+def lay_bricks(world: Any) -> None:
+    """Lay all bricks of the world's layout, and count the hits that they need."""
     world.needed = 0
     world.bricks_left = 0
     for cell in range(CELLS):
-        hits = hits_needed(level.kind[cell], world.round_number)
+        hits = hits_needed(world.kind[cell], world.round_number)
         world.brick_hits[cell] = hits
         if 0 < hits < UNBREAKABLE:
             world.needed += hits
@@ -45,36 +44,22 @@ def lay_bricks(world: Any, level: Any) -> None:
     world.lattice_changed = 1
 
 
-@kernel
-def add_score(world: Any, points: int) -> None:
-    """Add points, and a life for each threshold that they pass."""
-    world.score += points
-    if world.score >= world.next_life:
-        # No loop: LLVM turns one into a division of 128 bits, which Numba cannot link.
-        gained = 1 + (world.score - world.next_life) // EXTRA_LIFE_EVERY
-        world.lives += gained
-        world.next_life += gained * EXTRA_LIFE_EVERY
-
-
-@kernel
-def hit_brick(world: Any, level: Any, cell: int) -> bool:
+@inner
+def hit_brick(world: Any, rules: Any, cell: int) -> bool:
     """Hit a brick once; return whether it was damaged (gold is not)."""
-    world.hits_since_serve += 1
-    stage = world.speed_stage
-    for index in range(len(SPEED_STAGE_HITS)):
-        if world.hits_since_serve == SPEED_STAGE_HITS[index] and stage < SPEED_STAGE_MAX:
-            world.speed_stage = stage + 1
     if world.brick_hits[cell] == UNBREAKABLE:
         return False
     world.brick_hits[cell] -= 1
-    world.hits_left -= 1
-    world.idle = 0
     world.lattice_changed = 1
+    count_damage(world)
     if world.brick_hits[cell] == 0:
         world.bricks_left -= 1
-        kind = level.kind[cell]
+        world.bricks_broken += 1
+        kind = world.kind[cell]
         if kind == SILVER:
             add_score(world, SILVER_POINTS * world.round_number)
         elif kind <= COLOURS:
             add_score(world, COLOUR_POINTS[kind - 1])
+            if rules.capsule_rate > 0.0:
+                drop_capsule(world, rules, cell)
     return True

@@ -1,6 +1,5 @@
 """Every knob of the environment, validated: what `gym.make`'s keywords become."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from difflib import get_close_matches
@@ -8,10 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from .rules import DEFLECTIONS, REWARDS
+from .checks import check_choice, check_integer, check_number
+from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
+from .view import MAX_SIZE
 
-ACTIONS = ("discrete6", "discrete3")
-OBSERVATIONS = ("vector",)
+ACTIONS = ("discrete6", "discrete3", "box")
+OBSERVATIONS = ("vector", "grid", "rgb")
+# The keywords that say how a game is seen. All others decide its course.
+_PICTURES = ("size", "grey", "stack")
+_SEEN = ("observation", *_PICTURES)
+MAX_STACK = 64
 
 
 @dataclass(frozen=True)
@@ -19,15 +24,28 @@ class Config:
     """The configuration of an environment; every field is a keyword of `gym.make`.
 
     Args:
-        observation: ``"vector"``.
-        actions: ``"discrete6"``, (no-op, left, right) × (fire), or ``"discrete3"``, without fire.
+        observation: ``"vector"`` (float32 numbers, see `observation`), ``"grid"`` (float32 planes
+            over the cells of the field, see `grid`) or ``"rgb"`` (uint8 pictures, see `pixels`).
+        size: pixels of a picture's sides, or (height, width). It needs ``"rgb"``, as the next two.
+        grey: whether pictures have one channel, their brightness, instead of red, green and blue.
+        stack: how many pictures an observation shows, the latest as the last.
+        actions: ``"discrete6"``, (no-op, left, right) × (fire); ``"discrete3"``, without fire
+            (balls leave the paddle, and the laser shoots, by themselves); or ``"box"``, float32
+            [2]: velocity in [-1, 1], as a part of the paddle's speed, and fire if it is positive.
         reward: ``"progress"`` (each needed hit pays 1 / needed hits of the round, clearing pays 1),
             ``"score"`` (points / 1000) or ``"sparse"`` (1 for clearing a round).
         frame_skip: ticks a decision lasts; the reward is summed.
         sticky_action: probability that a decision repeats the one before.
         lives: balls one may lose before the episode terminates.
         life_penalty: what the loss of a life costs.
-        levels: names of packaged rounds or paths of level files, played in turn.
+        levels: ``"campaign"`` (the named rounds, the boss's, then generated ones without end),
+            ``"train"`` or ``"test"`` (generated from the seeds for that), ``"seeds:100-200"`` or a
+            `range` (generated from these seeds); or a name of a packaged round, the path of a level
+            file, or a sequence of such, played in turn again and again.
+        difficulty: of generated rounds, in [0, 1]; None lets it rise from round to round.
+        capsules: whether there are any.
+        capsule_rate: the part of the coloured bricks that hide one.
+        enemies: whether there are any, and the boss.
         speed: factor on the ball's speed.
         paddle: factor on the paddle's width.
         deflection: ``"angle"`` (by where on the paddle the ball lands), ``"zones6"`` (six fixed
@@ -40,31 +58,74 @@ class Config:
     """
 
     observation: str = "vector"
+    size: int | Sequence[int] = 84
+    grey: bool = False
+    stack: int = 1
     actions: str = "discrete6"
     reward: str = "progress"
     frame_skip: int = 4
     sticky_action: float = 0.0
     lives: int = 3
     life_penalty: float = 0.0
-    levels: Sequence[str] = ("ripple",)
+    levels: str | range | Sequence[str] = "campaign"
+    difficulty: float | None = None
+    capsules: bool = True
+    capsule_rate: float = CAPSULE_RATE
+    enemies: bool = True
     speed: float = 1.0
     paddle: float = 1.0
     deflection: str = "angle"
     max_decisions: int = 27_000
 
     def __post_init__(self) -> None:
-        _choice("observation", self.observation, OBSERVATIONS)
-        _choice("actions", self.actions, ACTIONS)
-        _choice("reward", self.reward, tuple(REWARDS))
-        _choice("deflection", self.deflection, tuple(DEFLECTIONS))
-        _integer("frame_skip", self.frame_skip, 1, 1000)
-        _integer("lives", self.lives, 1, 1000)
-        _integer("max_decisions", self.max_decisions, 1, 10**12)
-        _number("sticky_action", self.sticky_action, 0.0, 1.0)
-        _number("life_penalty", self.life_penalty, 0.0, 1e9)
-        _number("speed", self.speed, 1e-3, 1e6)
-        _number("paddle", self.paddle, 0.25, 5.0)
-        _strings("levels", self.levels)
+        check_choice("observation", self.observation, OBSERVATIONS)
+        self._check_pictures()
+        check_choice("actions", self.actions, ACTIONS)
+        check_choice("reward", self.reward, tuple(REWARDS))
+        check_choice("deflection", self.deflection, tuple(DEFLECTIONS))
+        check_integer("frame_skip", self.frame_skip, 1, 1000)
+        check_integer("lives", self.lives, 1, 1000)
+        check_integer("max_decisions", self.max_decisions, 1, 10**12)
+        check_number("sticky_action", self.sticky_action, 0.0, 1.0)
+        check_number("life_penalty", self.life_penalty, 0.0, 1e9)
+        check_number("speed", self.speed, 1e-3, 1e6)
+        check_number("paddle", self.paddle, 0.25, 5.0)
+        if self.difficulty is not None:
+            check_number("difficulty", self.difficulty, 0.0, 1.0)
+        _boolean("capsules", self.capsules)
+        check_number("capsule_rate", self.capsule_rate, 0.0, 1.0)
+        _boolean("enemies", self.enemies)
+        _levels(self.levels)
+
+    def _check_pictures(self) -> None:
+        if not isinstance(self.size, int | np.integer):
+            if isinstance(self.size, str) or not isinstance(self.size, Sequence):
+                raise TypeError(f"size must be an integer or (height, width); got {self.size!r}")
+            if len(self.size) != 2:
+                raise ValueError(f"size must be an integer or (height, width); got {self.size!r}")
+            # As a tuple, for JSON and TOML know lists only.
+            object.__setattr__(self, "size", tuple(self.size))
+        for pixels in self.picture_size:
+            check_integer("size", pixels, 1, MAX_SIZE)
+        _boolean("grey", self.grey)
+        check_integer("stack", self.stack, 1, MAX_STACK)
+        if self.observation == "rgb":
+            return
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in _PICTURES and value != field.default:
+                raise ValueError(
+                    f"{field.name}={value!r} says how pictures look, and observation="
+                    f"{self.observation!r} has none: leave it out, or use observation='rgb'"
+                )
+
+    @property
+    def picture_size(self) -> tuple[int, int]:
+        """The height and width of an observed picture, in pixels."""
+        if isinstance(self.size, Sequence):
+            height, width = self.size
+            return height, width
+        return self.size, self.size
 
     @classmethod
     def from_keywords(cls, keywords: dict[str, Any]) -> "Config":
@@ -77,29 +138,39 @@ class Config:
                 raise TypeError(f"unknown environment keyword {name!r}; {hint}")
         return cls(**keywords)
 
+    def plain(self) -> dict[str, Any]:
+        """Return the keywords as JSON and TOML hold them; `from_keywords` takes them back."""
+        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
-def _choice(name: str, value: object, legal: tuple[str, ...]) -> None:
-    if value not in legal:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, legal))}; got {value!r}")
-
-
-def _integer(name: str, value: object, low: int, high: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{name} must be an integer; got {value!r}")
-    if not low <= value <= high:
-        raise ValueError(f"{name} must be between {low} and {high}; got {value!r}")
+    def of_the_game(self) -> "Config":
+        """Return the configuration without what says only how the game is seen."""
+        names = [field.name for field in fields(self) if field.name not in _SEEN]
+        return Config(**{name: getattr(self, name) for name in names})
 
 
-def _number(name: str, value: object, low: float, high: float) -> None:
-    if isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer):
-        raise TypeError(f"{name} must be a number; got {value!r}")
-    if not (math.isfinite(value) and low <= value <= high):
-        raise ValueError(f"{name} must be between {low:g} and {high:g}; got {value!r}")
+def _plain(value: Any) -> Any:
+    if isinstance(value, range):
+        return f"seeds:{value.start}-{value.stop - 1}"
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(item) for item in value]
+    return value
 
 
-def _strings(name: str, value: object) -> None:
+def _boolean(name: str, value: object) -> None:
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False; got {value!r}")
+
+
+def _levels(value: object) -> None:
+    if isinstance(value, range) or (isinstance(value, str) and value):
+        return
     if isinstance(value, str) or not isinstance(value, Sequence) or not value:
-        raise TypeError(f"{name} must be a non-empty sequence of names or paths; got {value!r}")
+        raise TypeError(
+            "levels must be 'campaign', 'train', 'test', 'seeds:100-200', a range of seeds, a name "
+            f"or path of a level, or a non-empty sequence of such names; got {value!r}"
+        )
     for item in value:
         if not isinstance(item, str):
-            raise TypeError(f"{name} must hold names or paths as text; got {item!r}")
+            raise TypeError(f"levels must hold names or paths as text; got {item!r}")

@@ -18,6 +18,7 @@ from .raster import blend, first_pixel, last_pixel, squared_distance_to_segment,
 GRID_HEIGHT = 6.0  # of a capital
 ADVANCE = 5.6  # from one glyph to the next
 STROKE = 0.95  # a stroke's width
+GLYPH_WIDTH = (4.0 + STROKE) / (GRID_HEIGHT + STROKE)  # of a glyph's height
 
 GLYPHS = {
     " ": "",

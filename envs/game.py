@@ -1,83 +1,28 @@
-"""The game: an episode, a decision, and a tick as a list of phases."""
+"""The game: a decision, and a tick as a list of phases."""
 
 from typing import Any
 
-from ..physics.compilation import kernel
-from .ball import direction, set_course
-from .bricks import lay_bricks
-from .flight import fly_ball, free_ball
-from .paddle import move_paddle, steer_paddle
-from .random import random_sign, uniform, uniform_between
+from ..physics.compilation import inlined, kernel
+from .beams import fly_beams, shoot
+from .boss import fly_shards, throw_shards
+from .capsules import fall_capsule
+from .enemies import move_enemies, open_gates, steer_enemies
+from .episode import begin_round, lose_life
+from .flight import fly_balls, free_balls
+from .paddle import leave_by_exit, move_paddle, steer_paddle
+from .random import uniform
 from .rules import (
-    BALL_RADIUS,
-    EXTRA_LIFE_FIRST,
-    FIELD_WIDTH,
     IDLE_TICKS,
     MAX_BALLS,
-    PADDLE_TOP,
+    NO_CAPSULE,
     PROGRESS,
     SCORE,
-    SERVE_ANGLE_MAX,
-    SERVE_ANGLE_MIN,
-    SERVE_TICKS,
 )
-from .state import ABSENT, DECISION_LIMIT, FLYING, HELD, IDLE, NOT_TRUNCATED
+from .serve import balls_in_play, carry_balls, release_balls, remove_ball
+from .state import DECISION_LIMIT, FLYING, IDLE, NOT_TRUNCATED
 
 
-@kernel
-def begin_episode(world: Any, rules: Any, levels: Any) -> None:
-    """Start a new game; of the world's past only its generator goes on."""
-    world.done = 0
-    world.decisions = 0
-    world.idle = 0
-    world.score = 0
-    world.lives = rules.lives
-    world.next_life = EXTRA_LIFE_FIRST
-    world.round_number = 1
-    world.capped = 0
-    world.paddle_x = FIELD_WIDTH / 2
-    world.paddle_vx = 0.0
-    world.move = 0.0
-    world.fire = 0.0
-    _begin_round(world, levels)
-
-
-@kernel
-def _begin_round(world: Any, levels: Any) -> None:
-    """Lay the bricks of the world's round, and a ball on the paddle."""
-    world.level = (world.round_number - 1) % levels.shape[0]
-    lay_bricks(world, levels[world.level])
-    _lay_ball(world)
-
-
-@kernel
-def _lay_ball(world: Any) -> None:
-    """Lay one ball on the paddle's middle, and take every other ball away."""
-    for ball in range(MAX_BALLS):
-        world.ball_state[ball] = ABSENT
-        world.ball_x[ball] = 0.0
-        world.ball_y[ball] = 0.0
-        world.ball_vx[ball] = 0.0
-        world.ball_vy[ball] = 0.0
-        world.ball_offset[ball] = 0.0
-        world.ball_bounces[ball] = 0
-    world.ball_state[0] = HELD
-    world.held_ticks = 0
-    world.hits_since_serve = 0
-    world.speed_stage = 0
-    _carry_balls(world)
-
-
-@kernel
-def _carry_balls(world: Any) -> None:
-    """Keep held balls where they lie on the paddle."""
-    for ball in range(MAX_BALLS):
-        if world.ball_state[ball] == HELD:
-            world.ball_x[ball] = world.paddle_x + world.ball_offset[ball]
-            world.ball_y[ball] = PADDLE_TOP + BALL_RADIUS
-
-
-@kernel
+@inlined
 def decide(world: Any, rules: Any, levels: Any, move: float, fire: float, outcome: Any) -> None:
     """Play one decision of `frame_skip` ticks, fewer if the episode ends, into the outcome.
 
@@ -88,6 +33,7 @@ def decide(world: Any, rules: Any, levels: Any, move: float, fire: float, outcom
         move, fire = world.move, world.fire
     world.move = move
     world.fire = fire
+    clear_events(world)
     outcome.reward = 0.0
     outcome.hits = 0
     outcome.terminated = False
@@ -104,91 +50,84 @@ def decide(world: Any, rules: Any, levels: Any, move: float, fire: float, outcom
 
 
 @kernel
+def clear_events(world: Any) -> None:
+    """Forget what happened in the decision before."""
+    world.bricks_broken = 0
+    world.capsules_caught = 0
+    world.enemies_destroyed = 0
+    world.lives_lost = 0
+    world.lives_gained = 0
+    world.rounds_cleared = 0
+
+
+@inlined
 def _reward_tick(world: Any, rules: Any, levels: Any, outcome: Any) -> None:
     """Play one tick, and add what it pays to the outcome."""
-    score, lives, hits = world.score, world.lives, world.hits_left
-    _tick(world, rules, levels)
+    score, lost, hits = world.score, world.lives_lost, world.hits_left
+    _tick(world, rules)
     hits -= world.hits_left
-    cleared = world.hits_left == 0
     outcome.hits += hits
     if rules.reward == PROGRESS:
-        outcome.reward += hits / world.needed + (1.0 if cleared else 0.0)
+        outcome.reward += hits / world.needed + world.cleared
     elif rules.reward == SCORE:
         outcome.reward += (world.score - score) / 1000.0
     else:
-        outcome.reward += 1.0 if cleared else 0.0
-    if world.lives < lives:
-        outcome.reward -= rules.life_penalty
+        outcome.reward += world.cleared
+    outcome.reward -= rules.life_penalty * (world.lives_lost - lost)
     if world.lives == 0:
         outcome.terminated = True
     elif world.idle >= IDLE_TICKS:
         outcome.truncation = IDLE
-    if cleared:
+    if world.cleared == 1:
+        world.rounds_cleared += 1
         world.round_number += 1
-        _begin_round(world, levels)
+        begin_round(world, rules, levels)
 
 
-@kernel
-def _tick(world: Any, rules: Any, levels: Any) -> None:
-    """Play one tick of 1/60 s."""
+@inlined
+def _tick(world: Any, rules: Any) -> None:
+    """Play one tick of 1/60 s; it ends early when the round is cleared."""
     world.idle += 1
     steer_paddle(world, rules)
-    _serve(world, rules)
-    _fly_balls(world, rules, levels)
+    if world.exit_open == 1:
+        leave_by_exit(world, rules)
+    release_balls(world, rules)
+    shoot(world, rules)
+    _act_enemies(world, rules)
+    fly_balls(world, rules)
+    if world.beams > 0:
+        fly_beams(world, rules)
+    if world.cleared == 1:
+        return
+    if world.capsule != NO_CAPSULE:
+        fall_capsule(world, rules)
+    if world.enemies > 0:
+        move_enemies(world, rules)
+    landed = world.shards > 0 and fly_shards(world, rules)
     move_paddle(world)
-    _free_balls(world, rules)
-    _carry_balls(world)
-    _lose_balls(world)
+    free_balls(world, rules)
+    carry_balls(world)
+    if _lose_balls(world) or landed:
+        lose_life(world, rules)
 
 
-@kernel
-def _serve(world: Any, rules: Any) -> None:
-    """Serve the held balls on fire, or when they have lain long enough."""
-    held = False
-    for ball in range(MAX_BALLS):
-        held = held or world.ball_state[ball] == HELD
-    if not held:
-        return
-    world.held_ticks += 1
-    if world.fire == 0.0 and world.held_ticks < SERVE_TICKS:
-        return
-    world.held_ticks = 0
-    for ball in range(MAX_BALLS):
-        if world.ball_state[ball] == HELD:
-            world.ball_state[ball] = FLYING
-            sine, cosine = direction(
-                rules, uniform_between(world, SERVE_ANGLE_MIN, SERVE_ANGLE_MAX)
-            )
-            set_course(world, rules, ball, sine * random_sign(world), cosine)
+@inlined
+def _act_enemies(world: Any, rules: Any) -> None:
+    """Let enemies come in and choose their ways; where the boss is, he alone acts."""
+    if world.boss_hits > 0:
+        throw_shards(world)
+    elif rules.enemies == 1:
+        open_gates(world)
+        if world.enemies > 0:
+            steer_enemies(world, rules)
 
 
-@kernel
-def _fly_balls(world: Any, rules: Any, levels: Any) -> None:
-    """Move the flying balls by one tick."""
-    for ball in range(MAX_BALLS):
-        if world.ball_state[ball] == FLYING and world.hits_left > 0:
-            fly_ball(world, rules, levels[world.level], ball)
-
-
-@kernel
-def _free_balls(world: Any, rules: Any) -> None:
-    """Relax the flying balls that the paddle was moved into."""
-    for ball in range(MAX_BALLS):
-        if world.ball_state[ball] == FLYING:
-            free_ball(world, rules, ball)
-
-
-@kernel
-def _lose_balls(world: Any) -> None:
-    """Take away the balls below the field; the last one costs a life, and a new one is laid."""
-    left = 0
+@inlined
+def _lose_balls(world: Any) -> bool:
+    """Take away the balls below the field; return whether the last one is lost."""
     lost = 0
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == FLYING and world.ball_y[ball] < 0.0:
-            world.ball_state[ball] = ABSENT
+            remove_ball(world, ball)
             lost += 1
-        left += world.ball_state[ball] != ABSENT
-    if lost > 0 and left == 0:
-        world.lives -= 1
-        if world.lives > 0:
-            _lay_ball(world)
+    return bool(lost > 0 and balls_in_play(world) == 0)

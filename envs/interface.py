@@ -1,11 +1,14 @@
 """What the single and the vector environment share: spaces, commands, metadata, checks."""
 
+from difflib import get_close_matches
 from typing import Any
 
+import numpy as np
 from gymnasium import spaces
 
 from .batch import COMMANDS
 from .config import Config
+from .curriculum import START_OPTIONS
 from .rules import TICKS_PER_SECOND
 
 RENDER_MODES = ("rgb_array", "human")
@@ -16,9 +19,13 @@ METADATA: dict[str, Any] = {
 }
 
 
-def action_space(config: Config) -> spaces.Discrete:
+def action_space(config: Config) -> spaces.Space[Any]:
     """Return the space of one action."""
-    return spaces.Discrete(len(COMMANDS[config.actions]))
+    if config.actions in COMMANDS:
+        return spaces.Discrete(len(COMMANDS[config.actions]))
+    # Whether Box is generic depends on Gymnasium's version.
+    space: Any = spaces.Box(-1.0, 1.0, (2,), np.float32)
+    return space  # type: ignore[no-any-return]
 
 
 def instance_metadata(config: Config) -> dict[str, Any]:
@@ -34,6 +41,9 @@ def check_render_mode(render_mode: str | None, legal: tuple[str, ...]) -> None:
 
 def check_options(options: dict[str, Any] | None) -> None:
     """Refuse unknown reset options with a ValueError."""
-    unknown = set(options or {}) - {"reset_mask"}
+    known = (*START_OPTIONS, "reset_mask")
+    unknown = sorted(map(str, set(options or {}) - set(known)))
     if unknown:
-        raise ValueError(f"unknown reset option {sorted(unknown)[0]!r}; known: 'reset_mask'")
+        near = get_close_matches(unknown[0], known, 1)
+        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
+        raise ValueError(f"unknown reset option {unknown[0]!r}; {hint}")

@@ -1,7 +1,7 @@
 """The colours of the pictures: float64 [n, 3], red, green and blue from 0 to 255.
 
-The eight colours of bricks are steps of one ladder of brightness, about 25 of 255 apart, so that
-they can be told apart in greyscale and by eyes that confuse hues.
+The eight colours of bricks are steps of one ladder of brightness, about 25 of 255 apart, and so are
+the seven of capsules, so that they can be told apart in greyscale and by eyes that confuse hues.
 """
 
 import numpy as np
@@ -16,24 +16,55 @@ BRICK = 0
 BRICK_FOOT = 11
 BRICK_LIT = 22
 BRICK_SHADED = 33
-FRAME = 44
-FIELD_UPPER = 45
-FIELD_LOWER = 46
-PATTERN = 47
-WALL_LIT = 48
-WALL = 49
-WALL_SHADED = 50
-RIVET = 51
-PADDLE_LIT = 52
-PADDLE_SHADED = 53
-GRIP_LIT = 54
-GRIP_SHADED = 55
-BALL = 56
-BALL_RIM = 57
-LABEL = 58
-VALUE = 59
-SHINE = 60
-CRACK = 61
+# The capsules' rows, likewise: body, lit and shaded edge, and the letter; add the capsule's kind.
+CAPSULE = 44
+CAPSULE_LIT = 52
+CAPSULE_SHADED = 60
+LETTER = 68
+# The paddle's rows: its body and its ends at their upper and lower side; add the power.
+PADDLE_LIT = 76
+PADDLE_SHADED = 80
+GRIP_LIT = 84
+GRIP_SHADED = 88
+# The enemies' rows: upper and lower side, and rim; add the enemy's kind.
+ENEMY_LIT = 92
+ENEMY_SHADED = 96
+ENEMY_RIM = 100
+# The boss's rows: upper and lower side; add the step of its damage.
+BOSS_LIT = 104
+BOSS_SHADED = 108
+BOSS_STEPS = 4
+FRAME = 112
+FIELD_UPPER = 113
+FIELD_LOWER = 114
+PATTERN = 115
+WALL_LIT = 116
+WALL = 117
+WALL_SHADED = 118
+RIVET = 119
+BALL = 120
+BALL_RIM = 121
+LABEL = 122
+VALUE = 123
+SHINE = 124
+CRACK = 125
+MUZZLE = 126
+BEAM = 127
+BEAM_CORE = 128
+EYE = 129
+PUPIL = 130
+BOSS_RIM = 131
+BOSS_FACE = 132
+BOSS_BROW = 133
+BOSS_EYE = 134
+BOSS_GLOW = 135
+SHARD_RIM = 136
+SHARD = 137
+DOOR = 138
+SEAM = 139
+OPENING = 140
+LAMP = 141
+ARROW = 142
 
 _BRICKS = [
     (0, 0, 0),  # no brick
@@ -48,6 +79,37 @@ _BRICKS = [
     (178, 187, 202),  # silver
     (196, 142, 30),  # gold
 ]
+_CAPSULES = [
+    (0, 0, 0),  # no capsule
+    (34, 176, 84),  # catch
+    (52, 98, 250),  # enlarge
+    (200, 22, 36),  # laser
+    (255, 160, 52),  # slow
+    (130, 240, 255),  # disrupt
+    (236, 100, 212),  # break
+    (238, 238, 240),  # player
+]
+_PADDLES = [
+    # At the upper and lower side, and its ends' at the upper and lower side.
+    [(226, 232, 242), (98, 108, 134), (255, 122, 92), (158, 22, 34)],  # no power
+    [(128, 232, 150), (26, 96, 66), (236, 255, 214), (60, 140, 70)],  # catch
+    [(226, 232, 242), (98, 108, 134), (120, 176, 255), (30, 52, 190)],  # enlarge
+    [(124, 126, 146), (44, 44, 62), (255, 122, 92), (158, 22, 34)],  # laser
+]
+_ENEMIES = [
+    # Upper and lower side.
+    [(190, 250, 90), (70, 150, 30)],
+    [(196, 140, 255), (96, 40, 200)],
+    [(255, 150, 96), (196, 52, 40)],
+    [(120, 246, 226), (20, 140, 150)],
+]
+_BOSS = [
+    # Upper and lower side, from unhurt to nearly beaten.
+    [(150, 140, 206), (70, 58, 124)],
+    [(172, 132, 178), (92, 52, 104)],
+    [(202, 122, 142), (122, 44, 78)],
+    [(238, 116, 100), (156, 36, 48)],
+]
 _OTHERS = [
     (9, 9, 20),  # FRAME
     (28, 26, 58),  # FIELD_UPPER
@@ -57,25 +119,61 @@ _OTHERS = [
     (108, 116, 142),  # WALL
     (48, 52, 74),  # WALL_SHADED
     (34, 37, 56),  # RIVET
-    (226, 232, 242),  # PADDLE_LIT
-    (98, 108, 134),  # PADDLE_SHADED
-    (255, 122, 92),  # GRIP_LIT
-    (158, 22, 34),  # GRIP_SHADED
     (255, 252, 240),  # BALL
     (172, 208, 255),  # BALL_RIM
     (128, 138, 176),  # LABEL
     (244, 244, 250),  # VALUE
     (255, 255, 255),  # SHINE
     (30, 32, 46),  # CRACK
+    (255, 196, 120),  # MUZZLE
+    (255, 84, 72),  # BEAM
+    (255, 240, 204),  # BEAM_CORE
+    (250, 252, 255),  # EYE
+    (14, 12, 26),  # PUPIL
+    (104, 92, 150),  # BOSS_RIM
+    (44, 34, 78),  # BOSS_FACE
+    (96, 84, 148),  # BOSS_BROW
+    (255, 226, 110),  # BOSS_EYE
+    (255, 140, 60),  # BOSS_GLOW
+    (204, 62, 40),  # SHARD_RIM
+    (255, 206, 120),  # SHARD
+    (78, 84, 108),  # DOOR
+    (30, 32, 48),  # SEAM
+    (4, 4, 10),  # OPENING
+    (255, 206, 96),  # LAMP
+    (255, 120, 220),  # ARROW
 ]
+
+# A capsule's letter is white, or dark on a body that is brighter than this.
+_BRIGHT = 140.0
 
 
 def _palette() -> NDArray[np.float64]:
     bricks = np.array(_BRICKS, np.float64)
-    foot = bricks * 0.82
-    lit = bricks + (255.0 - bricks) * 0.45
-    shaded = bricks * 0.55
-    return np.concatenate([bricks, foot, lit, shaded, np.array(_OTHERS, np.float64)])
+    capsules = np.array(_CAPSULES, np.float64)
+    paddles = np.array(_PADDLES, np.float64)
+    enemies = np.array(_ENEMIES, np.float64)
+    boss = np.array(_BOSS, np.float64)
+    bright = (capsules @ LUMA > _BRIGHT)[:, np.newaxis]
+    return np.concatenate(
+        [
+            bricks,
+            bricks * 0.82,
+            bricks + (255.0 - bricks) * 0.45,
+            bricks * 0.55,
+            capsules,
+            capsules + (255.0 - capsules) * 0.5,
+            capsules * 0.5,
+            np.where(bright, (24.0, 24.0, 40.0), (255.0, 255.0, 255.0)),
+            *paddles.transpose(1, 0, 2),
+            *enemies.transpose(1, 0, 2),
+            enemies[:, 1] * 0.65,
+            *boss.transpose(1, 0, 2),
+            np.array(_OTHERS, np.float64),
+        ]
+    )
 
 
 PALETTE = _palette()
+# Not as a product of matrices, whose rounding may differ from machine to machine.
+GREYS = (PALETTE * LUMA).sum(axis=1, keepdims=True)  # float64 [n, 1]

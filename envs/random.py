@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..physics.compilation import kernel
+from ..physics.compilation import inner, kernel
 
 _A = np.uint64(13)
 _B = np.uint64(7)
@@ -37,13 +37,13 @@ def uniform(world: Any) -> float:
     return float((state >> _TO_53_BITS) * (1.0 / 9007199254740992.0))
 
 
-@kernel
+@inner
 def uniform_between(world: Any, low: float, high: float) -> float:
     """Draw a float64 in [low, high)."""
     return low + (high - low) * uniform(world)
 
 
-@kernel
+@inner
 def random_sign(world: Any) -> float:
     """Draw -1.0 or 1.0."""
     return 1.0 if uniform(world) < 0.5 else -1.0

@@ -236,17 +236,78 @@ def convex_coverage(
 
 
 @kernel
+def row_span(
+    edges: Any, first: int, count: int, x: float, y: float, scale: float, row: int
+) -> tuple[float, float, float, float, float]:
+    """Return (begin, left, right, end, height): what of a row of pixels a shape covers.
+
+    From begin to end it covers anything, and from left to right, between its sides, each pixel by
+    the height. A height of 0 is that of an empty row. The arguments are `convex_coverage`'s.
+    """
+    begin, left, right, end, height = math.inf, -math.inf, math.inf, -math.inf, 0.0
+    for index in range(first, first + count):
+        edge = edges[index]
+        start_x, start_y = x + edge.start_x * scale, y - edge.start_y * scale
+        end_x, end_y = x + edge.end_x * scale, y - edge.end_y * scale
+        top = max(min(start_y, end_y), float(row))
+        bottom = min(max(start_y, end_y), row + 1.0)
+        if bottom <= top:
+            continue
+        slope = (end_x - start_x) / (end_y - start_y)
+        upper = start_x + (top - start_y) * slope
+        lower = start_x + (bottom - start_y) * slope
+        if end_y > start_y:  # counterclockwise edges run down on the left
+            begin, left = min(begin, min(upper, lower)), max(left, max(upper, lower))
+            height += bottom - top
+        else:
+            right, end = min(right, min(upper, lower)), max(end, max(upper, lower))
+    return begin, left, right, end, height
+
+
+@kernel
+def span_coverage(
+    span: tuple[float, float, float, float, float],
+    edges: Any,
+    first: int,
+    count: int,
+    x: float,
+    y: float,
+    scale: float,
+    row: int,
+    column: int,
+) -> float:
+    """Return `convex_coverage`, for which most pixels of a row need no more than its `row_span`."""
+    if column >= span[1] and column + 1.0 <= span[2]:
+        return span[4]
+    return convex_coverage(edges, first, count, x, y, scale, row, column)
+
+
+@kernel
 def fill_convex(
-    image: Any, shape: Any, edges: Any, x: float, y: float, scale: float, colour: Any
+    image: Any,
+    shape: Any,
+    edges: Any,
+    x: float,
+    y: float,
+    scale: float,
+    upper: Any,
+    lower: Any,
 ) -> None:
-    """Fill a bounded `Shape` without rounding, its body at a place in pixels, with one colour."""
-    for row in range(
-        first_pixel(y - shape.upper_y * scale),
-        last_pixel(y - shape.lower_y * scale, image.shape[0]),
-    ):
-        for column in range(
-            first_pixel(x + shape.lower_x * scale),
-            last_pixel(x + shape.upper_x * scale, image.shape[1]),
-        ):
-            coverage = convex_coverage(edges, shape.first, shape.count, x, y, scale, row, column)
-            blend(image, row, column, colour, coverage)
+    """Fill a bounded `Shape` without rounding, its body at a place in pixels; see below.
+
+    The colours are those at its upper and lower end. A smaller scale than the picture's draws the
+    shape smaller, about its body's place.
+    """
+    top, bottom = y - shape.upper_y * scale, y - shape.lower_y * scale
+    for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
+        part = min(max((row + 0.5 - top) / (bottom - top), 0.0), 1.0)
+        span = row_span(edges, shape.first, shape.count, x, y, scale, row)
+        if span[4] == 0.0:
+            continue
+        for column in range(first_pixel(span[0]), last_pixel(span[3], image.shape[1])):
+            coverage = span_coverage(
+                span, edges, shape.first, shape.count, x, y, scale, row, column
+            )
+            for channel in range(image.shape[2]):
+                colour = mix(upper[channel], lower[channel], part)
+                blend_channel(image, row, column, channel, colour, coverage)

@@ -1,22 +1,13 @@
-"""The rules' numbers, each with its unit, and the record that carries them to the kernels.
+"""The rules' numbers, each with its unit.
 
 Lengths are in brick widths, times in ticks of 1/60 s, y points up, and the origin is the field's
-lower left corner. What a user may tune travels in a `Rules` record, for Numba freezes globals.
+lower left corner. What a user may tune travels in a record (`rulebook.Rules`), for Numba freezes
+globals.
 """
 
-import math
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
-
-from ..physics.colliders import Convex, Particle
-from ..physics.lattice import Lattice
-from ..physics.records import Edge, Shape
-from ..physics.shape_table import shape_table
-
-if TYPE_CHECKING:
-    from .config import Config
+# To be raised with every change after which a game may take another course: recorded games and
+# snapshots of other versions are refused.
+RULES_VERSION = 1
 
 TICKS_PER_SECOND = 60
 
@@ -40,6 +31,7 @@ SPEED_STAGE_HITS = (30, 55, 80, 105, 130, 150, 165)
 MAX_BALLS = 3
 
 PADDLE_WIDTH = 2.0
+LONG_PADDLE_WIDTH = 3.0  # enlarged
 PADDLE_THICKNESS = 0.25
 PADDLE_TOP = 2.0
 PADDLE_Y = PADDLE_TOP - PADDLE_THICKNESS / 2
@@ -50,6 +42,7 @@ SERVE_ANGLE_MIN = 20.0  # degrees from the vertical
 SERVE_ANGLE_MAX = 40.0
 DEFLECTION_MIN = 10.0  # degrees from the vertical, at the paddle's middle
 DEFLECTION_RANGE = 53.0  # degrees more at the paddle's ends
+CATCH_TICKS = 120  # then a caught ball is released
 FLAT_ANGLE = 10.0  # degrees: no flight is flatter than this after a bounce
 
 # A ball that bounces this often without damage or paddle contact is turned by a random angle.
@@ -87,90 +80,69 @@ SCORE = 1
 SPARSE = 2
 REWARDS = {"progress": PROGRESS, "score": SCORE, "sparse": SPARSE}
 
-# The shapes of the game, by their index in the shape table.
-PADDLE_SHAPE = 0
-BALL_SHAPE = 1
+# Capsules, by their letters. The first three are powers, of which there is one at a time.
+NO_CAPSULE = 0
+CATCH = 1
+ENLARGE = 2
+LASER = 3
+SLOW = 4
+DISRUPT = 5
+BREAK = 6
+PLAYER = 7
+CAPSULES = 7
+CAPSULE_LETTERS = ".CELSDBP"
+NO_POWER = 0
+POWERS = 3
+CAPSULE_RATE = 0.12  # of the coloured bricks
+CAPSULE_SPEED = 1 / 16  # per tick, downward
+CAPSULE_WIDTH = 0.8
+CAPSULE_HEIGHT = 0.375
+CAPSULE_POINTS = 1000
+# Of 256 capsules so many are break, and as many player; the others' weights share the rest.
+RARE_WEIGHT = 3 / 256
+DISRUPT_WEIGHT = 3 / 8
+ENLARGE_WEIGHT = 2 / 8
+SLOW_WEIGHT = 1 / 8
+CATCH_WEIGHT = 1 / 8  # and laser: 1 / 8
+SLOW_STAGES = 2
+DISRUPT_ANGLE = 15.0  # degrees between the balls
+BREAK_POINTS = 10_000
 
+BEAM_TICKS = 15  # between shots
+BEAM_SPEED = 0.5  # per tick, upward
+BEAM_WIDTH = 0.125
+BEAM_HEIGHT = 0.5
+BEAM_PLACE = 0.6  # of half the paddle's width, where its two beams start
+# A shot is two beams, and the longest flight lasts 24 ticks: two shots at once.
+MAX_BEAMS = 4
 
-def paddle_collider(width: float) -> Convex:
-    """Return the paddle's collider: a bar with pointed ends, which send a ball up or down.
+MAX_ENEMIES = 3
+ENEMY_KINDS = 4
+ENEMY_POINTS = 100
+ENEMY_TICKS_MIN = 240  # between two that come in
+ENEMY_TICKS_MAX = 600
+GATES = 2
+GATE_X = (2.75, 8.25)  # where the gates in the ceiling are
+GATE_TICKS = 40  # a gate opens so long before an enemy comes in
+ENEMY_SPEED = 0.03  # per tick, drifting
+CIRCLE_HEIGHT = 3.5  # an enemy that has drifted down to here circles; all bricks are above it
+CIRCLE_SPEED = 0.05  # per tick
+CIRCLE_RADIUS = 0.5
+CIRCLE_TICKS = 126  # about two turns; then it dives at the paddle
+DIVE_SPEED = 0.1  # per tick
+# An enemy stops so far from what bars its way: if it touched bricks, it would be caught at each
+# seam between two of them by a rounding error.
+CLEARANCE = 1 / 1024
 
-    Args:
-        width: from tip to tip, in brick widths.
-    """
-    half, thick = width / 2, PADDLE_THICKNESS / 2
-    return Convex(
-        [
-            (half, 0.0),
-            (half - thick, thick),
-            (-half + thick, thick),
-            (-half, 0.0),
-            (-half + thick, -thick),
-            (half - thick, -thick),
-        ]
-    )
+BOSS_X = 5.5
+BOSS_Y = 10.0
+BOSS_HITS = 16
+BOSS_POINTS = 1000  # each hit
+MAX_SHARDS = 4
+SHARD_TICKS = 90  # between two that the boss throws
+SHARD_SPEED = 0.08  # per tick
 
-
-def _tables(paddle_width: float) -> tuple[Any, Any]:
-    return shape_table([paddle_collider(paddle_width), Particle(BALL_RADIUS)])
-
-
-_SHAPES, _EDGES = _tables(PADDLE_WIDTH)
-
-Rules = np.dtype(
-    (
-        np.record,
-        [
-            ("shapes", Shape, _SHAPES.shape),
-            ("edges", Edge, _EDGES.shape),
-            ("lattice", Lattice, (1,)),  # of the bricks
-            # Directions by whole degrees from the vertical, for no sine is taken while stepping.
-            ("sine", np.float64, (92,)),
-            ("cosine", np.float64, (92,)),
-            ("brick_values", np.float32, (256,)),  # that observations show for each hits left
-            ("ball_speed", np.float64),  # at speed stage 0, per tick
-            ("paddle_speed", np.float64),  # per tick
-            ("paddle_half", np.float64),
-            ("frame_skip", np.int64),
-            ("sticky_action", np.float64),
-            ("deflection", np.int64),
-            ("reward", np.int64),
-            ("life_penalty", np.float64),
-            ("lives", np.int64),
-            ("max_decisions", np.int64),
-        ],
-    )
-)
-
-
-def brick_values() -> NDArray[np.float32]:
-    """Return the number that observations show for each number of hits left, float32 [256]."""
-    values = np.minimum(np.arange(256) / 8.0, 1.0).astype(np.float32)
-    values[UNBREAKABLE] = -1.0
-    return values
-
-
-def make_rules(config: "Config") -> Any:
-    """Return the one-element array of `Rules` that a validated configuration stands for."""
-    rules = np.zeros(1, Rules)
-    record = rules[0]
-    width = PADDLE_WIDTH * config.paddle
-    shapes, edges = _tables(width)
-    record.shapes[:] = shapes
-    record.edges[:] = edges
-    for degree in range(92):
-        record.sine[degree] = math.sin(math.radians(degree))
-        record.cosine[degree] = math.cos(math.radians(degree))
-    record.lattice[0] = (0.0, LATTICE_TOP, BRICK_WIDTH, BRICK_HEIGHT, COLUMNS, ROWS)
-    record.brick_values[:] = brick_values()
-    record.ball_speed = BALL_SPEED * config.speed
-    record.paddle_speed = PADDLE_SPEED
-    record.paddle_half = width / 2
-    record.frame_skip = config.frame_skip
-    record.sticky_action = config.sticky_action
-    record.deflection = DEFLECTIONS[config.deflection]
-    record.reward = REWARDS[config.reward]
-    record.life_penalty = config.life_penalty
-    record.lives = config.lives
-    record.max_decisions = config.max_decisions
-    return rules
+# Generated rounds get harder from round to round by this much (`difficulty` is in [0, 1]) ...
+DIFFICULTY_STEP = 0.05
+# ... from this on, after the named rounds.
+DIFFICULTY_AFTER_CAMPAIGN = 0.5

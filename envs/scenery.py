@@ -1,10 +1,9 @@
-"""What stands still in the pictures of one size: the background, and each look of a brick."""
+"""What the pictures of one size share: the background, and each look of a brick."""
 
 import itertools
 import math
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +16,16 @@ from .palette import (
     BRICK_LIT,
     BRICK_SHADED,
     CRACK,
+    DOOR,
     FIELD_LOWER,
     FIELD_UPPER,
     FRAME,
+    GREYS,
     LABEL,
     PALETTE,
     PATTERN,
     RIVET,
+    SEAM,
     SHINE,
     WALL,
     WALL_LIT,
@@ -38,8 +40,8 @@ from .raster import (
     last_pixel,
     overlap,
 )
-from .rules import COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, GOLD, ROWS, SILVER
-from .view import WALL_WIDTH, make_view, place
+from .rules import COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, GATE_X, GOLD, ROWS, SILVER
+from .view import EXIT_BOTTOM, EXIT_TOP, GATE_WIDTH, WALL_WIDTH, make_view, place
 
 # The score line's labels and values: upper side, height and left ends, in the field's brick widths.
 LABEL_TOP = FIELD_HEIGHT + WALL_WIDTH + 1.25
@@ -70,68 +72,95 @@ CRACKS = np.array(
 )
 
 
-@dataclass(frozen=True)
-class Scenery:
-    """What all pictures of one size share; the arrays are read-only.
+class Scenery(NamedTuple):
+    """What all pictures of one size share, as one argument of kernels; the arrays are read-only.
 
     Attributes:
-        view: where the field lies, `View` [1].
-        background: uint8 [height, width, 3], the picture without anything that changes.
-        looks: uint8 [LOOKS, rows, columns * 3], the bytes of the lattice's pixels, full of bricks
-            of one look each.
+        views: where the field lies, `View` [1].
+        palette: float64 [colours, channels].
+        background: uint8 [height, width * channels], a picture without anything that changes.
+        looks: uint8 [LOOKS, rows, columns * channels], the bytes of the lattice's pixels, full of
+            bricks of one look each.
     """
 
-    view: Any
+    views: Any
+    palette: NDArray[np.float64]
     background: NDArray[np.uint8]
     looks: NDArray[np.uint8]
 
 
-@lru_cache(maxsize=4)
-def scenery(height: int, width: int) -> Scenery:
-    """Return what all pictures of a size in pixels share, drawn on the first call."""
+@lru_cache(maxsize=8)
+def scenery(height: int, width: int, channels: int) -> Scenery:
+    """Return what all pictures of a size in pixels share, drawn on the first call.
+
+    Args:
+        channels: 3 for red, green and blue, 1 for grey.
+    """
     view = make_view(height, width)
-    background = np.zeros((height, width, 3), np.uint8)
-    _draw_backdrop(background, view[0])
+    palette = PALETTE if channels == 3 else GREYS
+    background = np.zeros((height, width, channels), np.uint8)
+    painter = _Painter(background, view[0], palette)
+    _draw_backdrop(painter)
+    _draw_walls(painter)
     if view[0].header:
-        _draw_pattern(background, view[0])
-    _draw_walls(background, view[0])
-    if view[0].header:
-        _draw_labels(background, view[0])
+        _draw_pattern(painter)
+        _draw_labels(painter)
     rows, columns = view[0].rows, view[0].columns
     lattice = background[rows[0] : rows[-1], columns[0] : columns[-1]]
     looks = np.repeat(lattice[np.newaxis], LOOKS, axis=0)
-    draw_looks(looks, view, PALETTE)
-    looks = looks.reshape(LOOKS, lattice.shape[0], -1)
-    background.flags.writeable = False
-    looks.flags.writeable = False
-    return Scenery(view, background, looks)
+    draw_looks(looks, view, palette)
+    shared = Scenery(
+        view,
+        palette,
+        background.reshape(height, width * channels),
+        looks.reshape(LOOKS, lattice.shape[0], -1),
+    )
+    for array in shared:
+        array.flags.writeable = False
+    return shared
 
 
-def _rectangle(
-    image: NDArray[np.uint8], view: Any, box: tuple[float, ...], upper: int, lower: int
-) -> None:
-    """Fill a box (left, bottom, right, top) of the field's units with a gradient."""
-    left, bottom = place(view, box[0], box[1])
-    right, top = place(view, box[2], box[3])
-    fill_rectangle(image, left, top, right, bottom, PALETTE[upper], PALETTE[lower])
+class _Painter:
+    """Draws into a picture by the field's coordinates and the palette's rows."""
+
+    def __init__(self, image: NDArray[np.uint8], view: Any, palette: NDArray[np.float64]) -> None:
+        self.image = image
+        self.view = view
+        self.palette = palette
+
+    def rectangle(self, box: tuple[float, ...], upper: int, lower: int) -> None:
+        """Fill a box (left, bottom, right, top) with a gradient."""
+        left, bottom = place(self.view, box[0], box[1])
+        right, top = place(self.view, box[2], box[3])
+        colours = self.palette[upper], self.palette[lower]
+        fill_rectangle(self.image, left, top, right, bottom, *colours)
+
+    def line(self, ends: tuple[float, ...], width: float, colour: int) -> None:
+        """Draw a line between two points (x, y, x, y)."""
+        start, end = place(self.view, ends[0], ends[1]), place(self.view, ends[2], ends[3])
+        width = float(width * self.view.scale)
+        draw_line(self.image, *start, *end, width, self.palette[colour])
+
+    def disc(self, x: float, y: float, radius: float, colour: int) -> None:
+        """Fill a disc."""
+        radius = float(radius * self.view.scale)
+        fill_disc(self.image, *place(self.view, x, y), radius, self.palette[colour])
+
+    def text(self, text: str, x: float, y: float, height: float, colour: int) -> None:
+        """Draw a text, its upper left corner at a point."""
+        height = float(height * self.view.scale)
+        draw_text(self.image, encode(text), *place(self.view, x, y), height, self.palette[colour])
 
 
-def _line(
-    image: NDArray[np.uint8], view: Any, ends: tuple[float, ...], width: float, colour: int
-) -> None:
-    """Draw a line between two points (x, y, x, y) of the field."""
-    start, end = place(view, ends[0], ends[1]), place(view, ends[2], ends[3])
-    draw_line(image, *start, *end, float(width * view.scale), PALETTE[colour])
-
-
-def _draw_backdrop(image: NDArray[np.uint8], view: Any) -> None:
+def _draw_backdrop(painter: _Painter) -> None:
     """Fill the picture, and in it the field."""
-    height, width = float(image.shape[0]), float(image.shape[1])
-    fill_rectangle(image, 0.0, 0.0, width, height, PALETTE[FRAME], PALETTE[FRAME])
-    _rectangle(image, view, (0.0, 0.0, FIELD_WIDTH, FIELD_HEIGHT), FIELD_UPPER, FIELD_LOWER)
+    height, width = float(painter.image.shape[0]), float(painter.image.shape[1])
+    frame = painter.palette[FRAME]
+    fill_rectangle(painter.image, 0.0, 0.0, width, height, frame, frame)
+    painter.rectangle((0.0, 0.0, FIELD_WIDTH, FIELD_HEIGHT), FIELD_UPPER, FIELD_LOWER)
 
 
-def _draw_pattern(image: NDArray[np.uint8], view: Any) -> None:
+def _draw_pattern(painter: _Painter) -> None:
     """Draw a faint tiling of the field: hexagons with sides of one brick width."""
     rise = math.sqrt(0.75)
     # Three sides of each hexagon, from its middle; the others are its neighbours'.
@@ -143,41 +172,56 @@ def _draw_pattern(image: NDArray[np.uint8], view: Any) -> None:
                 ends = (x + start[0], y + start[1], x + end[0], y + end[1])
                 middle_x, middle_y = (ends[0] + ends[2]) / 2, (ends[1] + ends[3]) / 2
                 if 0.0 < middle_x < FIELD_WIDTH and 0.0 < middle_y < FIELD_HEIGHT:
-                    _line(image, view, ends, 0.035, PATTERN)
+                    painter.line(ends, 0.035, PATTERN)
 
 
-def _draw_walls(image: NDArray[np.uint8], view: Any) -> None:
-    """Draw the two side walls, and the ceiling's where there is room."""
-    top = FIELD_HEIGHT + (WALL_WIDTH if view.header else 0.0)
+def _draw_walls(painter: _Painter) -> None:
+    """Draw the two side walls, and the ceiling's where there is room, with their closed gates."""
+    header = painter.view.header
+    top = FIELD_HEIGHT + (WALL_WIDTH if header else 0.0)
     for left in (-WALL_WIDTH, FIELD_WIDTH):
-        _draw_beam(image, view, (left, 0.0, left + WALL_WIDTH, top))
-    if view.header:
-        _draw_beam(image, view, (-WALL_WIDTH, FIELD_HEIGHT, FIELD_WIDTH + WALL_WIDTH, top))
-        for step in range(1, 7):
-            for x in (-WALL_WIDTH / 2, FIELD_WIDTH + WALL_WIDTH / 2):
-                _draw_rivet(image, view, x, 2.0 * step + 0.25)
-        for step in range(6):
-            _draw_rivet(image, view, 2.1 * step + 0.25, FIELD_HEIGHT + WALL_WIDTH / 2)
+        _draw_beam(painter, (left, 0.0, left + WALL_WIDTH, top))
+    if not header:
+        return
+    _draw_beam(painter, (-WALL_WIDTH, FIELD_HEIGHT, FIELD_WIDTH + WALL_WIDTH, top))
+    for y in (0.5, 4.25, 6.25, 8.25, 10.25, 12.25):
+        for x in (-WALL_WIDTH / 2, FIELD_WIDTH + WALL_WIDTH / 2):
+            painter.disc(x, y, 0.09, RIVET)
+    for x in (-WALL_WIDTH / 2, 1.25, 4.25, 6.75, 9.75, FIELD_WIDTH + WALL_WIDTH / 2):
+        painter.disc(x, FIELD_HEIGHT + WALL_WIDTH / 2, 0.09, RIVET)
+    for x in GATE_X:
+        half = GATE_WIDTH / 2
+        box = (x - half, FIELD_HEIGHT, x + half, FIELD_HEIGHT + WALL_WIDTH)
+        _draw_door(painter, box, (x, box[1], x, box[3]))
+    middle = (EXIT_BOTTOM + EXIT_TOP) / 2
+    box = (FIELD_WIDTH, EXIT_BOTTOM, FIELD_WIDTH + WALL_WIDTH, EXIT_TOP)
+    _draw_door(painter, box, (box[0], middle, box[2], middle))
 
 
-def _draw_beam(image: NDArray[np.uint8], view: Any, box: tuple[float, ...]) -> None:
+def _draw_beam(painter: _Painter, box: tuple[float, ...]) -> None:
     """Draw a bar of wall that is lit from the upper left."""
     left, bottom, right, top = box
     edge = 0.08
-    _rectangle(image, view, box, WALL_SHADED, WALL_SHADED)
-    _rectangle(image, view, (left, bottom, right - edge, top), WALL_LIT, WALL_LIT)
-    _rectangle(image, view, (left + edge, bottom, right - edge, top - edge), WALL, WALL)
+    painter.rectangle(box, WALL_SHADED, WALL_SHADED)
+    painter.rectangle((left, bottom, right - edge, top), WALL_LIT, WALL_LIT)
+    painter.rectangle((left + edge, bottom, right - edge, top - edge), WALL, WALL)
 
 
-def _draw_rivet(image: NDArray[np.uint8], view: Any, x: float, y: float) -> None:
-    fill_disc(image, *place(view, x, y), float(0.09 * view.scale), PALETTE[RIVET])
+def _draw_door(
+    painter: _Painter, box: tuple[float, float, float, float], seam: tuple[float, ...]
+) -> None:
+    """Draw a closed gate into a wall: two wings that meet at a seam (x, y, x, y)."""
+    left, bottom, right, top = box
+    edge = 0.04
+    painter.rectangle(box, SEAM, SEAM)
+    painter.rectangle((left + edge, bottom + edge, right - edge, top - edge), DOOR, WALL_SHADED)
+    painter.line(seam, 0.06, SEAM)
 
 
-def _draw_labels(image: NDArray[np.uint8], view: Any) -> None:
+def _draw_labels(painter: _Painter) -> None:
     """Draw what never changes of the score line."""
     for text, x in (("SCORE", SCORE_X), ("ROUND", ROUND_X), ("LIVES", LIVES_X)):
-        height = float(LABEL_HEIGHT * view.scale)
-        draw_text(image, encode(text), *place(view, x, LABEL_TOP), height, PALETTE[LABEL])
+        painter.text(text, x, LABEL_TOP, LABEL_HEIGHT, LABEL)
 
 
 @kernel

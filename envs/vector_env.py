@@ -1,7 +1,7 @@
 """`ArkanoidVectorEnv`: many games as one Gymnasium vector environment, stepped by one kernel."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
@@ -10,12 +10,17 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from .batch import Autoreset, Batch
+from .checks import check_integer
 from .config import Config
+from .generator import MAX_SEED
 from .interface import action_space, check_options, check_render_mode, instance_metadata
-from .observation import LAYOUT, vector_space
+from .snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .state import INFO_FIELDS
 
-Observations = NDArray[np.float32]
+if TYPE_CHECKING:
+    from .recorder import Recorder
+
+Observations = NDArray[Any]
 
 _MODES = {
     AutoresetMode.DISABLED: Autoreset.DISABLED,
@@ -32,8 +37,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         render_mode: ``"rgb_array"`` or None.
         autoreset_mode: a Gymnasium `AutoresetMode` or its text (``"NextStep"``, ``"SameStep"``,
             ``"Disabled"``).
-        copy: whether `reset` and `step` return fresh arrays. With False they return the same
-            arrays each time, overwritten by the next step.
+        copy: whether `reset` and `step` return fresh observations. With False they return views of
+            the same memory each time, which a later step overwrites.
         threads: how many threads step the worlds at the most; None lets their number decide.
             It changes no bit of the results.
         **keywords: the rules and the interface, see `Config`.
@@ -62,14 +67,13 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         self.copy = copy
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = instance_metadata(self.config) | {"autoreset_mode": self.autoreset_mode}
-        self.single_observation_space = vector_space()
+        self._mode = _MODES[self.autoreset_mode]
+        self._batch = Batch(num_envs, self.config, self._mode, threads)
+        self.single_observation_space = self._batch.observer.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.single_action_space = action_space(self.config)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self.layout = LAYOUT
-        self._mode = _MODES[self.autoreset_mode]
-        self._batch = Batch(num_envs, self.config, self._mode, threads)
-        self._seeded = np.zeros(num_envs, np.bool_)
+        self.layout = self._batch.observer.layout
         self._everywhere = np.ones(num_envs, np.bool_)
 
     def reset(
@@ -81,7 +85,9 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """Begin an episode in every world, or in those of ``options["reset_mask"]`` (bool [n]).
 
         An int seeds world ``i`` with ``seed + i``; a sequence gives each world's own seed; None
-        goes on with each world's generator.
+        goes on with each world's generator. The options ``"level"``, ``"seed"`` and
+        ``"difficulty"`` say how this and the following episodes of those worlds begin, see
+        `curriculum`.
         """
         super().reset(seed=seed if isinstance(seed, int) else None)
         check_options(options)
@@ -89,7 +95,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         if options and "reset_mask" in options:
             mask = self._reset_mask(options["reset_mask"])
         self._seed(seed, mask)
-        self._batch.reset(mask)
+        self._batch.reset(mask, options)
         return self._observations(), self._infos(self._batch.outcomes, mask)
 
     def step(
@@ -104,7 +110,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """Play one decision in every world.
 
         Args:
-            actions: integers [n].
+            actions: integers [n], or velocity and fire, [n, 2].
         """
         batch = self._batch
         if self._mode is Autoreset.DISABLED and batch.worlds["done"].any():
@@ -132,10 +138,68 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         from .render import draw_world
 
         batch = self._batch
-        return tuple(
-            draw_world(batch.worlds, batch.rules, batch.levels, index)
-            for index in range(self.num_envs)
-        )
+        return tuple(draw_world(batch.worlds, batch.rules, index) for index in range(self.num_envs))
+
+    def snapshot(self, world: int | None = None) -> bytes:
+        """Return the whole state of all worlds, or of one, to go on from with `restore`.
+
+        Random numbers, what observations remember and worlds that wait for their reset are in it.
+
+        Args:
+            world: its index; None: all of them.
+
+        Raises:
+            RuntimeError: a world was never reset.
+            ValueError: there is no such world.
+        """
+        return take_snapshot(self._batch, world)
+
+    def restore(self, snapshot: bytes) -> tuple[Observations, dict[str, Any]]:
+        """Go on from a snapshot, and return the observations and infos that were the latest then.
+
+        It may be of this environment, or of another one of the same configuration and number of
+        worlds, with any number of threads.
+
+        Raises:
+            TypeError: it is not bytes.
+            ValueError: it is corrupt, of another version, configuration, number of worlds or other
+                levels, or has an episode that is over where this environment would have begun the
+                next; the environment is as it was then.
+        """
+        restore_snapshot(self._batch, snapshot)
+        return self._observations(), self._infos(self._batch.outcomes, self._everywhere)
+
+    def spread(
+        self, snapshot: bytes, seed: int | None = None
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Bring all worlds into the same state, for planning; return as `restore` does.
+
+        Args:
+            snapshot: of one world: a single environment's, or ``snapshot(world)``.
+            seed: seeds world ``i``'s random numbers from here on with ``seed + i``. None: all have
+                the same ones ahead, so that a planner sees what luck will bring.
+
+        Raises:
+            TypeError, ValueError: as `restore`.
+        """
+        if seed is not None:
+            check_integer("seed", seed, 0, MAX_SEED)
+        spread_snapshot(self._batch, snapshot)
+        if seed is not None:
+            for index in range(self.num_envs):
+                self._batch.seed(index, seed + index)
+        return self._observations(), self._infos(self._batch.outcomes, self._everywhere)
+
+    def record(self, world: int = 0) -> "Recorder":
+        """Begin to record the games of a world, for replays, each from its beginning.
+
+        Raises:
+            ValueError: there is no such world.
+        """
+        # Imported on demand: most play is not recorded.
+        from .recorder import Recorder
+
+        return Recorder(self._batch, world)
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
@@ -153,11 +217,10 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             raise ValueError(f"{len(seeds)} seeds for {self.num_envs} worlds; give one for each")
         for index in np.flatnonzero(mask).tolist():
             chosen = seeds[index]
-            if chosen is None and not self._seeded[index]:
+            if chosen is None and not self._batch.seeded[index]:
                 chosen = int(self.np_random.integers(1 << 62))
             if chosen is not None:
                 self._batch.seed(index, int(chosen))
-                self._seeded[index] = True
 
     def _reset_mask(self, mask: Any) -> NDArray[np.bool_]:
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
@@ -176,9 +239,12 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
     def _infos(self, outcomes: Any, mask: NDArray[np.bool_]) -> dict[str, Any]:
         """Return each outcome's field and the mask of the worlds that have it."""
         infos: dict[str, Any] = {}
+        everywhere = mask.all()
+        owners = mask.copy()
         for key, field in INFO_FIELDS.items():
-            infos[key] = np.where(mask, outcomes[field], 0)
-            infos[f"_{key}"] = mask.copy()
+            values = outcomes[field]
+            infos[key] = values.copy() if everywhere else np.where(mask, values, 0)
+            infos[f"_{key}"] = owners
         return infos
 
     def _final_infos(self, done: NDArray[np.bool_]) -> dict[str, Any]:

@@ -12,6 +12,12 @@ WALL_WIDTH = 0.5
 HEADER_HEIGHT = 1.5  # above the ceiling's wall, for the score line
 FULL_WIDTH = FIELD_WIDTH + 2 * WALL_WIDTH
 FULL_HEIGHT = FIELD_HEIGHT + WALL_WIDTH + HEADER_HEIGHT
+# The gates in the walls: how wide those in the ceiling are, and where the exit on the right begins
+# and ends.
+GATE_WIDTH = 1.0
+EXIT_BOTTOM = 1.25
+EXIT_TOP = 2.5
+MAX_SIZE = 4096  # pixels, of a picture's height and width
 # Pixels per brick width below which nobody could read the score line. Then it and the ceiling's
 # wall are left out, and the field fills the height (84 x 84: exactly 6 pixels per brick width).
 HEADER_SCALE = 8.0

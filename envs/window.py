@@ -17,7 +17,7 @@ SCREEN_PART = 0.9
 PATIENCE = 0.1
 
 
-def _import_pygame() -> Any:
+def import_pygame() -> Any:
     """Import pygame-ce, quietly.
 
     Raises:
@@ -52,6 +52,9 @@ class Window:
         title: of the window.
         frames_per_second: at most so many pictures are shown a second; `show` waits accordingly.
 
+    Attributes:
+        events: what else the user did, pygame's events that came with the latest picture.
+
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
         ValueError: frames_per_second is not positive.
@@ -60,12 +63,16 @@ class Window:
     def __init__(self, title: str, frames_per_second: float) -> None:
         if not frames_per_second > 0:
             raise ValueError(f"frames_per_second must be positive; got {frames_per_second!r}")
-        self._pygame = _import_pygame()
+        self._pygame = import_pygame()
         self._title = title
         self._period = 1.0 / frames_per_second
         self._next = 0.0
         self._window: Any = None
         self._closed = False
+        self._full_screen = False
+        # The picture in the window: left, top and factor.
+        self._place = (0.0, 0.0, 1.0)
+        self.events: list[Any] = []
 
     @property
     def closed(self) -> bool:
@@ -87,6 +94,19 @@ class Window:
         if self._close_asked():
             self.close()
         return not self._closed
+
+    def toggle_full_screen(self) -> None:
+        """Fill the screen, or be a window again."""
+        self._full_screen = not self._full_screen
+        if self._full_screen:
+            self._window.set_fullscreen(desktop=True)
+        else:
+            self._window.set_windowed()
+
+    def to_picture(self, x: float, y: float) -> tuple[float, float]:
+        """Return the pixel of the picture that is seen at a pixel of the window."""
+        left, top, factor = self._place
+        return (x - left) / factor, (y - top) / factor
 
     def close(self) -> None:
         """Close the window; a second call does nothing."""
@@ -119,13 +139,16 @@ class Window:
         height, width = frame.shape[:2]
         factor = min(surface.get_width() / width, surface.get_height() / height)
         size = (max(1, round(width * factor)), max(1, round(height * factor)))
-        picture = pygame.surfarray.make_surface(frame.transpose(1, 0, 2))
-        scale = pygame.transform.scale if factor == int(factor) else pygame.transform.smoothscale
+        left = (surface.get_width() - size[0]) // 2
+        top = (surface.get_height() - size[1]) // 2
+        self._place = (left, top, factor)
+        picture = pygame.image.frombuffer(np.ascontiguousarray(frame), (width, height), "RGB")
+        if size != (width, height):
+            whole = factor == int(factor)
+            scale = pygame.transform.scale if whole else pygame.transform.smoothscale
+            picture = scale(picture, size)
         surface.fill(0)
-        surface.blit(
-            scale(picture, size),
-            ((surface.get_width() - size[0]) // 2, (surface.get_height() - size[1]) // 2),
-        )
+        surface.blit(picture, (left, top))
         self._window.flip()
 
     def _close_asked(self) -> bool:
@@ -138,6 +161,6 @@ class Window:
                 asked = True
             elif event.window is not None:
                 pygame.event.post(event)  # for another window of this program
-        # The rest means nothing here, but the queue must not run full of it.
-        pygame.event.get(exclude=closing)
+        # The queue must not run full, also where nobody looks at the rest.
+        self.events = pygame.event.get(exclude=closing)
         return asked

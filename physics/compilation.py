@@ -34,6 +34,7 @@ import numba
 import platformdirs
 from numba.core import event
 from numba.core.caching import FunctionCache
+from numba.core.registry import CPUDispatcher
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -58,22 +59,75 @@ def kernel(function: F) -> F:
     Numba's run time is left out, for it would count the references of every array that is passed
     on; so what allocates memory, or returns an array, does not compile.
     """
-    return _compiled(function, _nrt=False)
+    return _compile(function, _nrt=False)
 
 
 def accessor(function: F) -> F:
     """Compile a kernel that may return an array: a view into what it was given."""
-    return _compiled(function, _nrt=True)
+    return _compile(function, _nrt=True)
 
 
-def _compiled(function: F, **options: bool) -> F:
+def inner(function: F) -> F:
+    """Make a kernel that only kernels may call: compiled without the way in from Python.
+
+    That way, through which every argument is taken apart, is a good part of a small kernel's code.
+    """
+    compiled = _compile(function, _nrt=False, no_cpython_wrapper=True)
+    if not numba.config.DISABLE_JIT:
+        compiled.__class__ = _Inner  # type: ignore[assignment]
+    return compiled
+
+
+class _Inner(CPUDispatcher):  # type: ignore[misc]
+    """A kernel that has no way in from Python."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Refuse; without this, the process would crash."""
+        raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
+
+
+def _compile(function: F, **options: bool) -> F:
+    """Return the dispatcher of a function, with its cache (or the function, if not compiled)."""
     if numba.config.DISABLE_JIT:
         return function
-    compiled: F = numba.njit(function, nogil=True, error_model="numpy", **options)
+    # No C function either, which nobody calls.
+    compiled: F = numba.njit(
+        function, nogil=True, error_model="numpy", no_cfunc_wrapper=True, **options
+    )
+    _compile_once_for_literals(compiled)
     folder = cache_folder(Path(function.__code__.co_filename))
     if folder is not None and _prepared(folder):
         _cache_in(folder, compiled)
     return compiled
+
+
+def inlined(function: F) -> F:
+    """Make a kernel that becomes a part of the one that calls it, before anything is compiled.
+
+    For what is called in one place only: a function of its own is compiled again as a part of each
+    one above it, which in a deep tree of calls takes longer than all the rest.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    joined: F = numba.njit(function, nogil=True, error_model="numpy", inline="always")
+    return joined
+
+
+def _compile_once_for_literals(compiled: Any) -> None:
+    """Let calls with constants share the machine code of calls with variables.
+
+    A kernel that is called with the constants 2 and 3 would be compiled for each of them, and so
+    would all that it calls: one for each pair of shapes that a game knows, for instance.
+    """
+    template = compiled.get_call_template
+
+    def get_call_template(arguments: Any, keywords: Any) -> Any:
+        plain = tuple(numba.types.unliteral(argument) for argument in arguments)
+        return template(
+            plain, {name: numba.types.unliteral(value) for name, value in dict(keywords).items()}
+        )
+
+    compiled.get_call_template = get_call_template
 
 
 def cache_folder(file: Path) -> Path | None:

@@ -36,6 +36,16 @@ def lattice_index(position: float, size: float, count: int) -> int:
 
 
 @kernel
+def cell_centre(lattice: Any, cell: int) -> tuple[float, float]:
+    """Return the middle of a cell."""
+    column = cell % lattice.columns
+    row = cell // lattice.columns
+    x: float = lattice.left + (column + 0.5) * lattice.cell_width
+    y: float = lattice.top - (row + 0.5) * lattice.cell_height
+    return x, y
+
+
+@kernel
 def is_solid(lattice: Any, solid: Any, column: int, row: int) -> bool:
     """Tell whether a cell is solid (``solid[cell] != 0``); none outside the lattice is."""
     if column < 0 or row < 0 or column >= lattice.columns or row >= lattice.rows:

@@ -1,4 +1,4 @@
-"""Steps a second of the environment, on one core and on several, and through `gym.make`.
+"""Steps a second of the game, lite and full, by threads and observations, and by `gym.make`.
 
 Run: python tests/benchmarks/throughput.py [--worlds 1024] [--seconds 2]
 """
@@ -28,10 +28,21 @@ def rate(step: Callable[[], Any], seconds: float) -> float:
     return best
 
 
-def native_rate(worlds: int, seconds: float, **keywords: Any) -> float:
+GAMES = ("ArkanoidLite-v0", "Arkanoid-v0")
+# With the goals in steps a second, of one core at a frame skip of 4.
+OBSERVATIONS: list[tuple[dict[str, Any], int | None]] = [
+    ({"observation": "vector"}, None),
+    ({"observation": "grid"}, None),
+    ({"observation": "rgb", "grey": True}, 225_000),
+    ({"observation": "rgb", "grey": True, "stack": 4}, 100_000),
+    ({"observation": "rgb"}, None),
+]
+
+
+def native_rate(game: str, worlds: int, seconds: float, **keywords: Any) -> float:
     """Return the steps a second of all worlds of the native vector env, random actions."""
     env = gym.make_vec(
-        "Arkanoid-v0", worlds, "vector_entry_point", actions="discrete3", copy=False, **keywords
+        game, worlds, "vector_entry_point", actions="discrete3", copy=False, **keywords
     )
     env.reset(seed=0)
     actions = np.random.default_rng(0).integers(0, 3, (64, worlds))
@@ -41,11 +52,11 @@ def native_rate(worlds: int, seconds: float, **keywords: Any) -> float:
     return result
 
 
-def single_rate(seconds: float) -> float:
+def single_rate(game: str, seconds: float) -> float:
     """Return the steps a second of one env with the default wrappers, resets included."""
-    env = gym.make("Arkanoid-v0")
+    env = gym.make(game)
     env.reset(seed=0)
-    actions = np.random.default_rng(0).integers(0, 6, 64).tolist()
+    actions = np.random.default_rng(0).integers(0, env.action_space.n, 64).tolist()
     turn = iter(range(10**12))
 
     def step() -> None:
@@ -62,20 +73,27 @@ def main() -> None:
     parser.add_argument("--worlds", type=int, default=1024)
     parser.add_argument("--seconds", type=float, default=2.0, help="for each row")
     options = parser.parse_args()
-    print(f"{options.worlds} worlds, vector observations, random actions\n")
-    print(f"{'':42}{'steps/s':>14}{'ticks/s':>14}")
-    one = 0.0
-    for frame_skip in (1, 4):
-        for threads in sorted({1, os.cpu_count() or 1}):
-            steps = native_rate(
-                options.worlds, options.seconds, frame_skip=frame_skip, threads=threads
-            )
-            one = steps if threads == 1 else one
-            name = f"native, frame_skip={frame_skip}, threads={threads}"
-            ratio = "" if threads == 1 else f"   {steps / one:.2f} x one thread"
-            print(f"{name:42}{steps:14,.0f}{steps * frame_skip:14,.0f}{ratio}")
-    steps = single_rate(options.seconds)
-    print(f"{'one gym.make env, default wrappers':42}{steps:14,.0f}{steps * 4:14,.0f}")
+    print(f"{options.worlds} worlds, vector observations but where it says so, random actions\n")
+    print(f"{'':58}{'steps/s':>14}{'ticks/s':>14}")
+    for game in GAMES:
+        one = 0.0
+        for frame_skip in (1, 4):
+            for threads in sorted({1, os.cpu_count() or 1}):
+                steps = native_rate(
+                    game, options.worlds, options.seconds, frame_skip=frame_skip, threads=threads
+                )
+                one = steps if threads == 1 else one
+                name = f"{game}, native, frame_skip={frame_skip}, threads={threads}"
+                ratio = "" if threads == 1 else f"   {steps / one:.2f} x one thread"
+                print(f"{name:58}{steps:14,.0f}{steps * frame_skip:14,.0f}{ratio}", flush=True)
+        steps = single_rate(game, options.seconds)
+        name = f"{game}, one gym.make env, default wrappers"
+        print(f"{name:58}{steps:14,.0f}{steps * 4:14,.0f}", flush=True)
+    for keywords, goal in OBSERVATIONS:
+        steps = native_rate("Arkanoid-v0", options.worlds, options.seconds, threads=1, **keywords)
+        name = "Arkanoid-v0, native, " + ", ".join(f"{k}={v}" for k, v in keywords.items())
+        ratio = "" if goal is None else f"   {steps / goal:.2f} x the goal"
+        print(f"{name:58}{steps:14,.0f}{steps * 4:14,.0f}{ratio}", flush=True)
 
 
 if __name__ == "__main__":

@@ -161,7 +161,7 @@ def test_a_convex_polygon_covers_its_exact_area_in_every_pixel(
     exact = exact_coverage(Polygon(points * (scale, -scale) + (x, y)))
     np.testing.assert_allclose(drawn, exact, rtol=0, atol=NEARLY_UPRIGHT)
     image = canvas()
-    fill_convex(image, shape, edges, x, y, scale, GREY)
+    fill_convex(image, shape, edges, x, y, scale, GREY, GREY)
     np.testing.assert_allclose(coverage(image), exact, rtol=0, atol=ROUNDING + NEARLY_UPRIGHT)
 
 
@@ -233,6 +233,7 @@ PRIMITIVES: dict[str, Draw] = {
         x,
         y,
         4.0,
+        WHITE,
         WHITE,
     ),
 }

@@ -180,3 +180,31 @@ def test_the_environment_plays_on_when_its_window_is_closed() -> None:
     env.reset()
     env.close()
     env.close()
+
+
+@pytest.mark.parametrize("frame_skip", [1, 4, 7, 90])
+def test_a_window_of_the_environment_shows_sixty_ticks_a_second(
+    frame_skip: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where the frames a second are no whole number, as `render_fps` has to be."""
+    due: list[float] = []
+    monkeypatch.setattr(Window, "_wait", lambda window: due.append(window._period))
+    env = gym.make("arkanoid:Arkanoid-v0", render_mode="human", frame_skip=frame_skip)
+    env.reset(seed=1)
+    env.step(0)
+    env.close()
+    assert due == [pytest.approx(frame_skip / 60.0)] * 2
+
+
+def test_a_window_of_the_environment_fits_the_screen_with_whole_pixels_a_brick() -> None:
+    import pygame
+
+    env = gym.make("arkanoid:Arkanoid-v0", render_mode="human", frame_skip=1)
+    env.reset(seed=1)
+    width, height = env.unwrapped._window._window.size
+    screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
+    assert screen_height / 2 < height <= 0.9 * screen_height
+    assert width <= screen_width
+    assert height % 16 == 0
+    assert width * 16 == height * 12
+    env.close()

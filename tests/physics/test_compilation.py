@@ -292,6 +292,70 @@ report(first)
     assert len(outcome.stderr.splitlines()) == 1
 
 
+def test_constants_do_not_compile_a_kernel_anew(scratch: Scratch) -> None:
+    """Numba compiled `impact_between` and all below it for each pair of the game's shapes.
+
+    It makes a signature of every constant that is passed: with a dozen shapes by their numbers, the
+    first step took a minute.
+    """
+    scratch.write(
+        "constants.py",
+        """
+from arkanoid.physics.compilation import inlined, kernel
+
+@kernel
+def power(number, times):
+    result = 1
+    for _ in range(times):
+        result *= number
+    return result
+
+@inlined
+def cube(number):
+    return power(number, times=3)
+
+@kernel
+def total(number):
+    return power(number, 1) + power(2, 2) + power(number, number) + cube(number)
+""",
+    )
+    run = scratch.run(
+        "from constants import power, total; report([total(3), len(power.signatures)])"
+    )
+    assert run.result == [3 + 4 + 27 + 27, 1]
+    assert sorted(run.compiled) == ["power", "total"]
+
+
+def test_an_inner_kernel_serves_kernels_and_refuses_python(scratch: Scratch) -> None:
+    """It has no way in from Python: Numba would call a null pointer."""
+    scratch.write(
+        "inside.py",
+        """
+from arkanoid.physics.compilation import inner, kernel
+
+@inner
+def doubled(number):
+    return number + number
+
+@kernel
+def quadrupled(number):
+    return doubled(doubled(number))
+""",
+    )
+    program = """
+from inside import doubled, quadrupled
+try:
+    doubled(1)
+except TypeError as error:
+    report([quadrupled(2.5), str(error)])
+"""
+    for compiled in (["doubled", "quadrupled"], []):
+        run = scratch.run(program)
+        assert run.result[0] == 10.0
+        assert run.result[1].startswith("doubled can be called by kernels only")
+        assert sorted(run.compiled) == compiled
+
+
 def test_processes_may_compile_at_the_same_time(scratch: Scratch) -> None:
     with ThreadPoolExecutor() as pool:
         outcomes = list(pool.map(lambda _: scratch.run(), range(4)))

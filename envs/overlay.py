@@ -1,0 +1,55 @@
+"""Text over a picture of the game: titles, and what a player should know now."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .font import GLYPHS, draw_text, encode, text_step
+from .palette import PALETTE, VALUE, WALL_LIT
+from .view import FULL_HEIGHT, FULL_WIDTH
+
+# Heights in brick widths.
+MIDDLE = 11.7  # of all lines, from the picture's upper edge: between most levels' bricks and paddle
+TITLE_HEIGHT = 0.72
+TEXT_HEIGHT = 0.3
+LINE_SPACE = 0.22  # below a line
+BAND_SPACE = 0.35  # of the dark band above and below the lines
+WIDEST = 10.8  # longer lines are drawn smaller
+DIMMED = 4  # the band's pixels are divided by this
+
+
+def draw_overlay(
+    picture: NDArray[np.uint8], title: str, lines: Sequence[str], band: bool = True
+) -> None:
+    """Draw a title and lines below it into a picture, in the middle between left and right.
+
+    Args:
+        picture: uint8 [height, width, 3].
+        title: in large letters, if not empty; lines: in small ones. Without either nothing is
+            drawn. What the font lacks becomes a question mark.
+        band: whether what is behind them is dimmed.
+    """
+    if not title and not lines:
+        return
+    scale = min(picture.shape[0] / FULL_HEIGHT, picture.shape[1] / FULL_WIDTH)
+    texts = [(title, TITLE_HEIGHT, VALUE)] if title else []
+    texts += [(line, TEXT_HEIGHT, WALL_LIT) for line in lines]
+    needed = sum(height + LINE_SPACE for _, height, _ in texts) - LINE_SPACE
+    top = MIDDLE - needed / 2
+    if band:
+        upper, lower = (top - BAND_SPACE) * scale, (top + needed + BAND_SPACE) * scale
+        picture[max(0, round(upper)) : round(lower)] //= DIMMED
+    for text, height, colour in texts:
+        _draw_line(picture, text, top, height, colour, scale)
+        top += height + LINE_SPACE
+
+
+def _draw_line(
+    picture: NDArray[np.uint8], text: str, top: float, height: float, colour: int, scale: float
+) -> None:
+    """Draw a line in the middle between left and right; top and height in brick widths."""
+    codes = encode("".join(letter if letter in GLYPHS else "?" for letter in text.upper()))
+    height = min(height, WIDEST / max(1.0, len(codes) * text_step(1.0)))
+    left = picture.shape[1] / 2 - len(codes) * text_step(height) * scale / 2
+    draw_text(picture, codes, left, top * scale, height * scale, PALETTE[colour])
