@@ -75,7 +75,7 @@ def inner(function: F) -> F:
     """
     compiled = _compile(function, _nrt=False, no_cpython_wrapper=True)
     if not numba.config.DISABLE_JIT:
-        compiled.__class__ = _Inner  # type: ignore[assignment]
+        compiled.__class__ = _Inner
     return compiled
 
 

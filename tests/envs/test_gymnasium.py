@@ -90,14 +90,16 @@ def assert_same(one, other):
         assert one == other
 
 
+# The slow ones add up to over two million steps.
+@pytest.mark.parametrize("steps", [2000, pytest.param(25_000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("game", GAMES)
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
-def test_native_equals_sync(mode, game):
+def test_native_equals_sync(mode, game, steps):
     native, single = make_pair(7, mode, **game)
     assert_same(native.reset(seed=3), single.reset(seed=3))
     native.action_space.seed(0)
     ends = 0
-    for _ in range(2000):
+    for _ in range(steps):
         actions = native.action_space.sample()
         result = native.step(actions)
         assert_same(result, single.step(actions))
