@@ -21,13 +21,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..physics.sealed import seal, unseal
 from ..version import __version__
 from .config import Config
 from .curriculum import MAX_ROUND
 from .generator import MAX_SEED
 from .level_plan import LevelPlan
 from .rules import BRICK_LETTERS, CELLS, RULES_VERSION, TICKS_PER_SECOND
-from .sealed import seal, unseal
 from .state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, Level
 
 _MARK = b"ARKAPLAY"

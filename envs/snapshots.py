@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..physics.sealed import seal, unseal
 from .rules import RULES_VERSION
-from .sealed import seal, unseal
 from .state import Outcome, World
 
 if TYPE_CHECKING:

@@ -1,23 +1,20 @@
 """A state as bytes that can be kept, and is refused where it does not belong."""
 
 import hashlib
-import struct
-import zlib
 
 import numpy as np
 
+from .sealed import seal, unseal
 from .world_setup import Bytes
 
-_MAGIC = b"arkanoid-world"
+_MARK = b"ARKWORLD"
 VERSION = 1
-_HEADER = struct.Struct("<14sH16sIQ")  # magic, version, setup's digest, checksum, length
+_DIGEST_SIZE = 16  # bytes
 
 
 def pack_states(states: Bytes, memory: Bytes) -> bytes:
     """Return states, uint8 [worlds, bytes], and the digest of their setup, as bytes."""
-    content = states.tobytes()
-    head = _HEADER.pack(_MAGIC, VERSION, _digest(memory), zlib.crc32(content), len(content))
-    return head + content
+    return seal(_MARK, VERSION, _digest(memory) + states.tobytes())
 
 
 def unpack_states(snapshot: bytes, states: Bytes, memory: Bytes) -> None:
@@ -28,26 +25,15 @@ def unpack_states(snapshot: bytes, states: Bytes, memory: Bytes) -> None:
         ValueError: if it is corrupt, of another version, or of another world or batch; the states
             are as they were then.
     """
-    if not isinstance(snapshot, bytes | bytearray | memoryview):
-        raise TypeError(f"a snapshot must be bytes, but is a {type(snapshot).__name__}")
-    if len(snapshot) < _HEADER.size or snapshot[: len(_MAGIC)] != _MAGIC:
-        raise ValueError("this is no snapshot of a world")
-    _, version, digest, checksum, length = _HEADER.unpack_from(snapshot)
-    content = snapshot[_HEADER.size :]
-    if version != VERSION:
-        raise ValueError(
-            f"the snapshot is of version {version}, and this is version {VERSION}: restore it with "
-            "the release that took it"
-        )
-    if len(content) != length or zlib.crc32(content) != checksum:
-        raise ValueError("the snapshot is corrupt: it is cut short, or bits have changed")
-    if digest != _digest(memory) or length != states.nbytes:
+    content = unseal("snapshot of worlds", _MARK, VERSION, snapshot)
+    digest, kept = content[:_DIGEST_SIZE], content[_DIGEST_SIZE:]
+    if digest != _digest(memory) or len(kept) != states.nbytes:
         raise ValueError(
             "the snapshot is of another world: of other bodies, static ones elsewhere, other masks "
             "or restitutions, or another number of worlds"
         )
-    states[:] = np.frombuffer(content, np.uint8).reshape(states.shape)
+    states[:] = np.frombuffer(kept, np.uint8).reshape(states.shape)
 
 
 def _digest(memory: Bytes) -> bytes:
-    return hashlib.sha256(memory.tobytes()).digest()[:16]
+    return hashlib.sha256(memory.tobytes()).digest()[:_DIGEST_SIZE]
