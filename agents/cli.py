@@ -5,19 +5,30 @@ which returns the exit status. It imports what is slow or optional inside `run`.
 """
 
 import argparse
+import itertools
 import sys
 from collections.abc import Sequence
 from types import ModuleType
 
 from .. import __version__
-from . import evaluate, train
+from . import evaluate, record, reproduce, train, tune, watch
 from .schema import SettingsError
 
-COMMANDS: dict[str, ModuleType] = {"train": train, "evaluate": evaluate}
+COMMANDS: dict[str, ModuleType] = {
+    "train": train,
+    "reproduce": reproduce,
+    "tune": tune,
+    "evaluate": evaluate,
+    "watch": watch,
+    "record": record,
+}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
     "imageio": "train",
+    "imageio_ffmpeg": "train",
+    "matplotlib": "train",
+    "optuna": "train",
     "stable_baselines3": "train",
     "tensorboard": "train",
     "torch": "train",
@@ -60,6 +71,8 @@ def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str
         key, equals, value = word.removeprefix("--").partition("=")
         if not word.startswith("--") or word in _FLAGS:
             words.append(word)
+        elif f"--{key}" in _OPTIONS:
+            words += [word] if equals else [word, *itertools.islice(rest, 1)]
         elif equals:
             overrides.append((key, value))
         else:
@@ -70,7 +83,10 @@ def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str
     return words, overrides
 
 
+# What is the commands' own, and no setting: without and with a value.
 _FLAGS = {"--help", "--version", "--json"}
+_OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
+_OPTIONS |= {"--trials"}
 
 
 def _parser() -> argparse.ArgumentParser:
