@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from types import ModuleType
 
 from .. import __version__
-from . import evaluate, record, reproduce, train, tune, watch
+from . import evaluate, record, report, reproduce, train, tune, watch
 from .schema import SettingsError
 
 COMMANDS: dict[str, ModuleType] = {
@@ -21,6 +21,7 @@ COMMANDS: dict[str, ModuleType] = {
     "evaluate": evaluate,
     "watch": watch,
     "record": record,
+    "report": report,
 }
 
 # Packages that only some commands need -> the extra that installs them.

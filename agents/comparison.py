@@ -126,16 +126,18 @@ def as_tables(experiment: Experiment, comparison: Comparison) -> str:
             heading = f"{name}: {suites[name].episodes} whole games"
         else:
             heading = f"{name}: {len(starts)} levels, {suites[name].episodes} episodes of each"
-        parts.append(f"{heading}; mean ± 95 % bootstrap interval\n\n{_summary_table(results)}")
+        for statistic, title in (("mean", "mean"), ("iqm", "interquartile mean")):
+            table = _summary_table(results, statistic)
+            parts.append(f"{heading}; {title} ± 95 % bootstrap interval\n\n{table}")
         if len(starts) > 1:
             parts.append(f"{name}: cleared rate by level\n\n{_level_table(starts, results)}")
     return "\n\n".join(parts)
 
 
-def _summary_table(results: Mapping[str, Results]) -> str:
+def _summary_table(results: Mapping[str, Results], statistic: str) -> str:
     rows = [["", *COLUMNS.values()]]
     for name, measured in results.items():
-        rows.append([name, *(str(summarise(measured[key])["mean"]) for key in COLUMNS)])
+        rows.append([name, *(str(summarise(measured[key])[statistic]) for key in COLUMNS)])
     return _aligned(rows)
 
 

@@ -1,23 +1,21 @@
 """A policy at play, as pictures drawn without a display: clips and what a window shows."""
 
-from collections.abc import Iterable, Iterator
-from itertools import chain, islice
+from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import imageio.v2 as imageio
 import numpy as np
 from numpy.typing import NDArray
 
 from .baselines import Policy
 from .episodes import begin_episodes
+from .film import write_film
 from .levels import Start
-from .schema import SettingsError
 from .settings import Experiment
 from .worlds import make_worlds
 
 TICKS_PER_SECOND = 60
-FORMATS = (".gif", ".mp4")
 
 
 class Frame(NamedTuple):
@@ -41,17 +39,11 @@ def record_clip(
     It ends with the episode, or after so many seconds of the game (``evaluation.clip_seconds`` if
     not given). Raises `SettingsError` if the file's name ends otherwise.
     """
-    if path.suffix.lower() not in FORMATS:
-        raise SettingsError(f"{path}: a clip's name must end in one of {', '.join(FORMATS)}")
-    smooth = path.suffix.lower() == ".mp4" and can_be_smooth(experiment)
+    smooth = path.suffix == ".mp4" and can_be_smooth(experiment)
     rate = frame_rate(experiment, smooth)
     count = int((seconds or experiment.evaluation.clip_seconds) * rate)
     frames = islice(play_frames(experiment, policy, start, smooth), max(1, count))
-    pictures = (frame.picture for frame in frames)
-    if path.suffix.lower() == ".mp4":
-        _write_mp4(path, pictures, rate)
-    else:
-        _write_gif(path, list(pictures), rate)
+    write_film(path, (frame.picture for frame in frames), rate)
 
 
 def can_be_smooth(experiment: Experiment) -> bool:
@@ -103,22 +95,3 @@ def _frame(worlds: Any, infos: dict[str, Any]) -> Frame:
     picture = np.array(worlds.render()[0], np.uint8)
     score, lives, number = (int(infos[key][0]) for key in ("score", "lives", "round"))
     return Frame(picture, score, lives, number)
-
-
-def _write_gif(path: Path, pictures: list[NDArray[np.uint8]], rate: float) -> None:
-    # A GIF counts hundredths of a second: rounding the times, not the durations, keeps its pace.
-    times = np.round(np.arange(len(pictures) + 1) * 100 / rate)
-    durations = (np.diff(times) * 10).astype(int).tolist()
-    imageio.mimwrite(path, pictures, format="GIF", duration=durations, loop=0)  # type: ignore[arg-type]
-
-
-def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]], rate: float) -> None:
-    """Write a film of H.264 in the colours that every player knows: its sides must be even."""
-    iterator = iter(pictures)
-    first = next(iterator)
-    height, width = (side // 2 * 2 for side in first.shape[:2])
-    with imageio.get_writer(
-        path, format="FFMPEG", fps=rate, codec="libx264", quality=8, macro_block_size=2
-    ) as writer:
-        for picture in chain([first], iterator):
-            writer.append_data(np.ascontiguousarray(picture[:height, :width]))

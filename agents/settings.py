@@ -89,7 +89,10 @@ class Curriculum(Settings):
         (), "parts of the training after which a further stage begins", above=0, at_most=1
     )
     difficulty: tuple[float, ...] = setting(
-        (), "of generated rounds, one number a stage", at_least=0, at_most=1
+        (),
+        "of generated rounds, one number a stage: worlds have from 0 to it, evenly spread",
+        at_least=0,
+        at_most=1,
     )
     rounds: tuple[int, ...] = setting(
         (), "one number a stage: worlds begin in rounds 1 to this one, in turn", at_least=1

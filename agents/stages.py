@@ -53,7 +53,7 @@ def stage_options(curriculum: Curriculum, stage: int, num_worlds: int) -> list[d
     options: list[dict[str, Any]] = [{} for _ in range(num_worlds)]
     for world, of_world in enumerate(options):
         if curriculum.difficulty:
-            of_world["difficulty"] = curriculum.difficulty[stage]
+            of_world["difficulty"] = curriculum.difficulty[stage] * (world + 1) / num_worlds
         if curriculum.rounds:
             of_world["level"] = 1 + world % curriculum.rounds[stage]
     return options
