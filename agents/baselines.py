@@ -9,6 +9,7 @@ from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
 from ..envs.rules import FIELD_WIDTH, PADDLE_SPEED
+from .worlds import native
 
 
 class Policy(Protocol):
@@ -36,7 +37,7 @@ def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArr
 
 def paddle_reach(worlds: VectorEnv[Any, Any, Any]) -> float:
     """Return how far the paddle can go in a decision, in brick widths."""
-    return PADDLE_SPEED * int(worlds.unwrapped.config.frame_skip)  # type: ignore[attr-defined]
+    return PADDLE_SPEED * float(native(worlds).config.frame_skip)
 
 
 class NoOp:
@@ -92,7 +93,7 @@ class BallFollower:
 def make_baseline(name: str, worlds: VectorEnv[Any, Any, Any], seed: int) -> Policy:
     """Return the baseline of a name, to play in ``worlds`` with the observation ``vector``."""
     space = worlds.single_action_space
-    layout: Mapping[str, slice] = worlds.unwrapped.layout  # type: ignore[attr-defined]
+    layout: Mapping[str, slice] = native(worlds).layout
     if name == "no-op":
         return NoOp(space)
     if name == "random":

@@ -16,6 +16,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from .adapter import GymnasiumVecEnv
 from .files import replace_whole
 from .schema import SettingsError
+from .worlds import native
 
 # What stable-baselines3 counts and remembers from one rollout to the next.
 _MODEL_FIELDS = (
@@ -33,7 +34,7 @@ _FORMAT = 1
 
 def capture(model: PPO, venv: GymnasiumVecEnv, extra: dict[str, Any]) -> dict[str, Any]:
     """Return the state of a training between two rollouts; ``extra`` is kept with it."""
-    environment: Any = venv.env.unwrapped
+    environment = native(venv.env)
     return {
         "format": _FORMAT,
         "policy": copy.deepcopy(model.policy.state_dict()),
@@ -52,7 +53,7 @@ def capture(model: PPO, venv: GymnasiumVecEnv, extra: dict[str, Any]) -> dict[st
 
 def restore(state: dict[str, Any], model: PPO, venv: GymnasiumVecEnv) -> None:
     """Bring a model and its environment, made for the same experiment, into a captured state."""
-    environment: Any = venv.env.unwrapped
+    environment = native(venv.env)
     model.policy.load_state_dict(state["policy"])
     model.policy.optimizer.load_state_dict(state["optimizer"])
     for name, value in copy.deepcopy(state["model"]).items():

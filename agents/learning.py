@@ -53,7 +53,7 @@ def save_model(model: PPO, path: Path) -> None:
     Without the optimiser's state, which is twice as large as the weights and which nobody needs
     who plays: `PPO.load` takes the file all the same.
     """
-    policy = model.policy
+    policy: Any = model.policy
     used = policy.optimizer
     policy.optimizer = policy.optimizer_class(
         policy.parameters(), lr=model.lr_schedule(1.0), **policy.optimizer_kwargs

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..envs import ArkanoidVectorEnv
 from ..envs.rules import BALL_RADIUS, FIELD_HEIGHT, FIELD_WIDTH, PADDLE_TOP
 from .baselines import encode_actions, paddle_reach
+from .worlds import native
 
 # Where on the paddle the next ball shall land, in half widths from its middle: what is tried out.
 OFFSETS = np.linspace(-0.9, 0.9, 13)
@@ -34,7 +35,7 @@ class Planner:
     """
 
     def __init__(self, worlds: VectorEnv[Any, Any, Any], seed: int = 0) -> None:
-        self._worlds: Any = worlds.unwrapped
+        self._worlds = native(worlds)
         self._reach = paddle_reach(worlds)
         self._scouts = ArkanoidVectorEnv(
             len(OFFSETS), autoreset_mode="SameStep", copy=False, **self._worlds.config.plain()
@@ -109,7 +110,8 @@ class Planner:
         first = np.where(falls.any(axis=1), next_ball, there.argmax(axis=1))
         time = np.where(np.isfinite(times[rows, first]), times[rows, first], 0.0)
         landing = x[rows, first] + vx[rows, first] * time
-        return _between_walls(landing), falls.any(axis=1)
+        any_falls: NDArray[np.bool_] = falls.any(axis=1)
+        return _between_walls(landing), any_falls
 
     def _heights(self, observations: NDArray[Any]) -> NDArray[Any]:
         """Return the balls' heights; those of balls that are not there are the field's."""

@@ -121,7 +121,8 @@ def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArr
     steps = np.linspace(first, max(first, last), _POINTS)
     values = np.stack([np.interp(steps, one[:, 0], one[:, 1]) for one in series])
     intervals = np.array([bootstrap_interval(values[:, at]) for at in range(_POINTS)])
-    return np.concatenate([steps[None], intervals.T])
+    lines: NDArray[np.float64] = np.concatenate([steps[None], intervals.T])
+    return lines
 
 
 def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:

@@ -107,7 +107,7 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
         )
     for bound in ("low", "high"):
         check_value(Experiment, key, item[bound], source)
-    low, high, log, step = (item.get(name) for name in _BOUNDS)
+    low, high, log, step = item["low"], item["high"], item.get("log"), item.get("step")
     numbers = [low, high, *([] if step is None else [step])]
     if any(type(number) not in (int, float) for number in numbers) or low >= high:
         raise SettingsError(f"{where}: 'low', 'high' and 'step' must be numbers, 'low' the smaller")

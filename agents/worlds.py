@@ -10,6 +10,11 @@ from .schema import SettingsError
 from .settings import Experiment
 
 
+def native(worlds: VectorEnv[Any, Any, Any]) -> Any:
+    """Return the environment itself, with what only ours has: `config`, `layout`, snapshots."""
+    return worlds.unwrapped
+
+
 def make_worlds(
     experiment: Experiment, num_worlds: int, without: Collection[str] = (), **extra: Any
 ) -> VectorEnv[Any, Any, Any]:
