@@ -64,8 +64,11 @@ def group_by_experiment(
     """Return the models by their agents: one agent is what differs in nothing but the seed.
 
     A single agent is called ``agent``, several by their experiments' names. Raises `SettingsError`
-    if they were not trained to play the same game.
+    if they were not trained to play the same game, or one is given twice.
     """
+    for index, model in enumerate(models):
+        if model.path in [other.path for other in models[:index]]:
+            raise SettingsError(f"{model.path}: given twice; it counts once only")
     groups: list[tuple[Experiment, list[ModelFile]]] = []
     for model in models:
         experiment = replace(model.run.experiment(overrides), seed=0, output=".")

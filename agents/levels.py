@@ -78,7 +78,7 @@ def find_starts(
             if seeds is None:
                 load_round(name)
         except (OSError, ValueError) as error:
-            raise SettingsError(str(error)) from None
+            raise SettingsError(f"level {name!r}: {error}") from None
         if seeds is None:
             starts.append(Start(name, {"level": name}))
             continue

@@ -110,7 +110,7 @@ class Planner:
         first = np.where(falls.any(axis=1), next_ball, there.argmax(axis=1))
         time = np.where(np.isfinite(times[rows, first]), times[rows, first], 0.0)
         landing = x[rows, first] + vx[rows, first] * time
-        any_falls: NDArray[np.bool_] = falls.any(axis=1)
+        any_falls: NDArray[np.bool_] = np.asarray(falls.any(axis=1))
         return _between_walls(landing), any_falls
 
     def _heights(self, observations: NDArray[Any]) -> NDArray[Any]:

@@ -128,4 +128,5 @@ def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArr
 def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:
     """Return the distances from the means to the intervals' ends, [2, n], none below zero."""
     distances = [[i.mean - i.low for i in intervals], [i.high - i.mean for i in intervals]]
-    return np.maximum(0.0, np.array(distances))
+    errors: NDArray[np.float64] = np.maximum(0.0, np.array(distances))
+    return errors

@@ -140,7 +140,7 @@ class ModelFile:
         if name is None:
             name = str(pretrained_run())
         path = Path(name)
-        run = RunFolder.of(name if path.is_dir() else str(path.parent))
+        run = RunFolder.of(name if path.is_dir() or not path.exists() else str(path.parent))
         wanted = path
         if path.is_dir():
             wanted = run.best if run.best.is_file() else run.model
@@ -154,7 +154,12 @@ class ModelFile:
     def describe(self) -> dict[str, Any]:
         """Return what tells this model from others, as JSON takes it."""
         digest = hashlib.sha256(self.path.read_bytes()).hexdigest()
-        return {"path": self.path.as_posix(), "sha256": digest, "seed": self.run.experiment().seed}
+        return {
+            "run": self.run.path.resolve().name,
+            "file": self.path.name,
+            "sha256": digest,
+            "seed": self.run.experiment().seed,
+        }
 
 
 def pretrained_run() -> Path:
