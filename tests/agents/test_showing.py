@@ -1,5 +1,6 @@
 """Clips, the window, plots and reports of trained agents."""
 
+import json
 import os
 import re
 from dataclasses import replace
@@ -17,6 +18,7 @@ from arkanoid.agents.evaluate import group_by_experiment
 from arkanoid.agents.levels import find_starts
 from arkanoid.agents.page import Code, Heading, Picture, Table, Text, as_html, as_markdown
 from arkanoid.agents.plots import mean_curve
+from arkanoid.agents.provenance import weights_hash
 from arkanoid.agents.recording import can_be_smooth, frame_rate, play_frames
 from arkanoid.agents.runs import ModelFile, RunFolder
 from arkanoid.agents.schema import SettingsError
@@ -25,6 +27,7 @@ from arkanoid.agents.training import train
 from arkanoid.agents.worlds import make_worlds
 from imageio_ffmpeg import count_frames_and_secs
 from PIL import Image
+from stable_baselines3 import PPO
 
 SMALL = [("training.timesteps", "1024"), ("training.worlds", "8"), ("ppo.n_steps", "64")]
 SMALL += [("ppo.batch_size", "256"), ("evaluation.episodes", "2"), ("env.max_decisions", "200")]
@@ -247,3 +250,20 @@ def test_the_mean_curve_is_read_at_the_same_decisions() -> None:
     # Of two runs a resample is of one, of the other, or of both.
     np.testing.assert_allclose(lows, steps)
     np.testing.assert_allclose(highs, 3 * steps)
+
+
+def test_without_a_model_the_packaged_agent_plays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was trained from scratch by `arkanoid train quick`, and is far above all baselines."""
+    arguments = ["--evaluation.episodes", "20", "--evaluation.suites", '["games"]']
+    assert cli.main(["evaluate", "--json", *arguments]) == 0
+    results = json.loads(capsys.readouterr().out)["suites"]["games"]["policies"]
+    agent, follower = (results[name]["summary"] for name in ("agent", "ball-follower"))
+    assert agent["cleared"]["mean"]["mean"] >= 0.9
+    assert agent["hits"]["mean"]["low"] > 1.5 * follower["hits"]["mean"]["high"]
+    assert cli.main(["record", str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
+    about = ModelFile.find(None).run.about()
+    assert about["outcome"] == "finished"
+    state = PPO.load(ModelFile.find(None).path, device="cpu").policy.state_dict()
+    assert weights_hash(state) == about["weights"]
