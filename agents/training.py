@@ -107,7 +107,10 @@ def check_resumable(folder: RunFolder) -> None:
     """Refuse a run that has ended, with a `SettingsError`."""
     outcome = folder.about().get("outcome")
     if outcome not in ("unfinished", INTERRUPTED):
-        raise SettingsError(f"{folder.path}: nothing to resume: the run has ended ({outcome})")
+        raise SettingsError(
+            f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
+            f"`arkanoid evaluate {folder.path}` measures it"
+        )
 
 
 def _validation(

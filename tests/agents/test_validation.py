@@ -12,7 +12,7 @@ from arkanoid.agents.learning import load_policy, make_model
 from arkanoid.agents.networks import LatticeExtractor, PlanesExtractor
 from arkanoid.agents.provenance import weights_hash
 from arkanoid.agents.runs import RunFolder
-from arkanoid.agents.settings import Curriculum, Experiment, load_experiment
+from arkanoid.agents.settings import Curriculum, Experiment, load_experiment, packaged_configs
 from arkanoid.agents.stages import stage_at, stage_options
 from arkanoid.agents.training import train
 from arkanoid.agents.worlds import make_worlds, native
@@ -165,3 +165,19 @@ def test_a_saved_model_holds_no_optimiser_state(tmp_path: Path) -> None:
     assert [p.shape for p in again.policy.parameters()] == [
         p.shape for p in loaded.policy.parameters()
     ]
+
+
+@pytest.mark.parametrize("name", packaged_configs())
+def test_every_packaged_config_can_be_trained(name: str, tmp_path: Path) -> None:
+    """With all that it asks for, curriculum and validation, but for a moment only."""
+    overrides = [("training.worlds", "4"), ("training.timesteps", "192"), ("ppo.n_steps", "16")]
+    overrides += [
+        ("ppo.batch_size", "64"),
+        ("validation.every", "64"),
+        ("validation.episodes", "1"),
+    ]
+    overrides += [("env.max_decisions", "30"), ("output", str(tmp_path))]
+    outcome, run = trained(load_experiment(name, overrides))
+    assert outcome == "finished"
+    assert run.best.is_file()
+    assert run.about()["timesteps"] == 192
