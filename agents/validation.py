@@ -73,11 +73,12 @@ class Validation(BaseCallback):
         self.logger.dump(step)
         memory, settings = self._memory, self._settings
         memory["due"] = (step // settings.every + 1) * settings.every
-        if memory["best"] is None or means[settings.best] > memory["best"]:
-            memory["best"], memory["worse"] = means[settings.best], 0
+        value, best = means[settings.best], memory["best"]
+        memory["worse"] = 0 if best is None or value > best else memory["worse"] + 1
+        # Of equals the latest: a rate that is at its end already has nothing more to tell.
+        if best is None or value >= best:
+            memory["best"] = value
             self._on_best(self.model)  # type: ignore[arg-type]
-        else:
-            memory["worse"] += 1
         reason = self._judge(step, means) if self._judge is not None else None
         if reason is not None:
             self._stop(reason)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from arkanoid.agents.curves import STEP, read_curve
 from arkanoid.agents.episodes import adapt
 from arkanoid.agents.learning import load_policy, make_model
 from arkanoid.agents.networks import LatticeExtractor, PlanesExtractor
@@ -44,7 +45,7 @@ def test_validation_changes_no_weight(tmp_path: Path, deterministic: str) -> Non
     assert outcomes[1][1].best.exists()
 
 
-def test_the_best_model_is_kept_and_patience_ends_the_training(tmp_path: Path) -> None:
+def test_patience_ends_the_training(tmp_path: Path) -> None:
     seen: list[tuple[int, float]] = []
 
     def judge(step: int, means: dict[str, float]) -> None:
@@ -52,17 +53,31 @@ def test_the_best_model_is_kept_and_patience_ends_the_training(tmp_path: Path) -
 
     # Nothing is ever cleared, so that no measurement is better than the first one.
     options = (("validation.every", "1024"), ("validation.episodes", "2"))
-    constant = ("ppo.schedule", "constant")
-    options += (("validation.best", "cleared"), ("validation.patience", "2"), constant)
+    options += (("validation.best", "cleared"), ("validation.patience", "2"))
     outcome, run = trained(small(tmp_path, *options), on_measure=judge)
     assert outcome == "2 measurements without a better one at 3072 decisions"
     assert [step for step, _ in seen] == [1024, 2048, 3072]
     assert run.about()["outcome"] == outcome
     assert run.about()["timesteps"] == 3072
-    # The best model is that after 1024 decisions: a run of so many has the same weights.
-    _, first = trained(small(tmp_path, ("training.timesteps", "1024"), constant))
+    # Of equals the latest is the best.
     best = PPO.load(run.best, device="cpu").policy.state_dict()
-    assert weights_hash(best) == first.about()["weights"] != run.about()["weights"]
+    assert weights_hash(best) == run.about()["weights"]
+
+
+def test_the_best_model_is_that_of_the_best_measurement(tmp_path: Path) -> None:
+    """A run that ends there has the same weights."""
+    constant = ("ppo.schedule", "constant")
+    options = (("validation.every", "1024"), ("validation.episodes", "2"), constant)
+    _, run = trained(small(tmp_path, *options))
+    measured = {
+        row["validation/return"]: row[STEP]
+        for row in read_curve(run.curve)
+        if "validation/return" in row
+    }
+    step = str(measured[max(measured)])
+    _, shorter = trained(small(tmp_path, ("training.timesteps", step), constant))
+    best = PPO.load(run.best, device="cpu").policy.state_dict()
+    assert weights_hash(best) == shorter.about()["weights"]
 
 
 def test_a_cleared_rate_ends_the_training(tmp_path: Path) -> None:
