@@ -5,7 +5,7 @@ the same weights, bit for bit, as on stable-baselines3's own `DummyVecEnv` of si
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -60,11 +60,22 @@ class GymnasiumVecEnv(VecEnv):
         super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
 
     def reset(self) -> VecEnvObs:
-        """Start an episode in every world, with the seeds and options that were set before."""
+        """Start an episode in every world, with the seeds and options that were set before.
+
+        Worlds whose options differ are reset one group after the other, by ``reset_mask``.
+        """
         seeds = None if all(seed is None for seed in self._seeds) else list(self._seeds)
-        # Gymnasium types the seed as one integer, though its own environments take a list.
-        observations, infos = self.env.reset(seed=seeds, options=self._common_options())  # type: ignore[arg-type]
-        self.reset_infos = [world_info(infos, world) for world in range(self.num_envs)]
+        observations: Any = None
+        self.reset_infos = [{} for _ in range(self.num_envs)]
+        groups = list(self._options_by_worlds())
+        if len(groups) > 1:
+            # Gymnasium's own environments reset some worlds only after all have been reset once.
+            self.env.reset(seed=seeds)  # type: ignore[arg-type]
+        for mask, options in groups:
+            # Gymnasium types the seed as one integer, though its own environments take a list.
+            observations, infos = self.env.reset(seed=seeds, options=options)  # type: ignore[arg-type]
+            for world in np.flatnonzero(mask).tolist():
+                self.reset_infos[world] = world_info(infos, world)
         for statistic in (self._returns, self._lengths, *self._sums.values()):
             statistic[:] = 0
         self._reset_seeds()
@@ -108,11 +119,26 @@ class GymnasiumVecEnv(VecEnv):
             statistic[world] = 0
         return info
 
-    def _common_options(self) -> dict[str, Any] | None:
-        first = self._options[0]
-        if any(options != first for options in self._options):
-            raise ValueError("a Gymnasium vector environment takes the same options for all worlds")
-        return first or None
+    def _options_by_worlds(self) -> Iterator[tuple[NDArray[np.bool_], dict[str, Any] | None]]:
+        """Yield masks (bool [worlds]) of worlds with the same options, and what `reset` takes."""
+        waiting = list(range(self.num_envs))
+        while waiting:
+            options = self._options[waiting[0]]
+            mask = np.array([other == options for other in self._options])
+            waiting = [world for world in waiting if not mask[world]]
+            yield mask, (options or None) if mask.all() else {**options, "reset_mask": mask}
+
+    def get_statistics(self) -> dict[str, Any]:
+        """Return what is known of the episodes that are being played, for `set_statistics`."""
+        sums = {key: values.copy() for key, values in self._sums.items()}
+        return {"returns": self._returns.copy(), "lengths": self._lengths.copy(), "sums": sums}
+
+    def set_statistics(self, statistics: dict[str, Any]) -> None:
+        """Go on from what `get_statistics` returned, in the same state of the environment."""
+        self._returns[:] = statistics["returns"]
+        self._lengths[:] = statistics["lengths"]
+        for key, values in self._sums.items():
+            values[:] = statistics["sums"][key]
 
     def close(self) -> None:
         """Close the environment."""

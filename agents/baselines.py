@@ -1,71 +1,106 @@
 """Policies without a network, to compare agents with."""
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 import numpy as np
 from gymnasium.spaces import Discrete
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
-# Takes observations [worlds, ...] and returns actions [worlds, ...].
-Policy = Callable[[NDArray[Any]], NDArray[Any]]
-
-NO_OP, LEFT, RIGHT = 0, 1, 2
-
-# In units of half the field's width. The paddle moves 0.76 brick widths, or 0.14 of this unit, in a
-# decision of four ticks: within half of that a move would overshoot, and the paddle would tremble.
-_DEAD_ZONE = 0.07
+from ..envs.rules import FIELD_WIDTH, PADDLE_SPEED
+from .worlds import native
 
 
-def no_op(observations: NDArray[Any]) -> NDArray[np.int64]:
-    """Return the actions [worlds] of somebody who only watches."""
-    return np.full(len(observations), NO_OP, np.int64)
+class Policy(Protocol):
+    """Whoever plays."""
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return actions [n, ...] for observations [n, ...] of the worlds of these indices [n]."""
+
+
+def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArray[Any]:
+    """Return the actions that move the paddle, and fire where one can.
+
+    Args:
+        space: `Discrete`, (no-op, left, right), perhaps once more with fire; or velocity and fire.
+        moves: how far, in what the paddle can go in a decision, [n]. A discrete action goes all the
+            way or not at all, whichever ends nearer: otherwise the paddle would tremble.
+        fire: whether to fire.
+    """
+    if isinstance(space, Discrete):
+        indices = np.where(moves < -0.5, 1, np.where(moves > 0.5, 2, 0))
+        return indices + 3 if fire and int(space.n) > 3 else indices
+    velocities = np.clip(moves, -1.0, 1.0)
+    return np.stack([velocities, np.full(len(moves), 1.0 if fire else -1.0)], 1, dtype=np.float32)
+
+
+def paddle_reach(worlds: VectorEnv[Any, Any, Any]) -> float:
+    """Return how far the paddle can go in a decision, in brick widths."""
+    return PADDLE_SPEED * float(native(worlds).config.frame_skip)
+
+
+class NoOp:
+    """Only watches."""
+
+    def __init__(self, space: Any) -> None:
+        self._space = space
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return the actions that do nothing."""
+        return encode_actions(self._space, np.zeros(len(worlds)))
 
 
 class RandomPolicy:
-    """Draws every action with the same probability, from a generator of its own."""
+    """Draws every action with the same probability, from a generator of its own.
 
-    def __init__(self, num_actions: int, seed: int) -> None:
-        self._num_actions = num_actions
+    What a world's n-th action is depends neither on which other worlds still play nor on them.
+    """
+
+    def __init__(self, space: Any, num_worlds: int, seed: int) -> None:
+        self._space = space
+        self._num_worlds = num_worlds
         self._random = np.random.default_rng(seed)
 
-    def __call__(self, observations: NDArray[Any]) -> NDArray[np.int64]:
-        """Return actions [worlds]."""
-        return self._random.integers(self._num_actions, size=len(observations))
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return random actions."""
+        if isinstance(self._space, Discrete):
+            return self._random.integers(int(self._space.n), size=self._num_worlds)[worlds]
+        size = (self._num_worlds, *self._space.shape)
+        return self._random.uniform(-1.0, 1.0, size)[worlds].astype(np.float32)
 
 
 class BallFollower:
     """Keeps the paddle's middle below the first ball; never fires.
 
     ``layout`` names the slices of an observation: ``"paddle"`` and ``"ball_x"`` begin with the
-    paddle's middle and the first ball's position across the field, on the same scale.
+    paddle's middle and the first ball's position across the field, on the same scale. ``reach`` is
+    how far the paddle can go in a decision, on that scale.
     """
 
-    def __init__(self, layout: Mapping[str, slice]) -> None:
+    def __init__(self, space: Any, layout: Mapping[str, slice], reach: float) -> None:
+        self._space = space
+        self._reach = reach
         self._paddle = layout["paddle"].start
         self._ball = layout["ball_x"].start
 
-    def __call__(self, observations: NDArray[Any]) -> NDArray[np.int64]:
-        """Return the actions [worlds] for observations [worlds, size]."""
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return actions for observations [n, size]."""
         gap = observations[:, self._ball] - observations[:, self._paddle]
-        return np.where(gap < -_DEAD_ZONE, LEFT, np.where(gap > _DEAD_ZONE, RIGHT, NO_OP))
+        return encode_actions(self._space, gap / self._reach)
 
 
-def make_baselines(worlds: VectorEnv[Any, Any, Any], seed: int) -> dict[str, Policy]:
-    """Return the baselines that can play in ``worlds``, by name.
-
-    The ball-follower is among them where the observation has named slices (``layout``). Raises
-    ValueError if the actions are not `Discrete`.
-    """
+def make_baseline(name: str, worlds: VectorEnv[Any, Any, Any], seed: int) -> Policy:
+    """Return the baseline of a name, to play in ``worlds`` with the observation ``vector``."""
     space = worlds.single_action_space
-    if not isinstance(space, Discrete):
-        raise ValueError(f"the baselines play with Discrete actions, not {space}")
-    policies: dict[str, Policy] = {
-        "no-op": no_op,
-        "random": RandomPolicy(int(space.n), seed),
-    }
-    layout = getattr(worlds.unwrapped, "layout", None)
-    if layout is not None:
-        policies["ball-follower"] = BallFollower(layout)
-    return policies
+    layout: Mapping[str, slice] = native(worlds).layout
+    if name == "no-op":
+        return NoOp(space)
+    if name == "random":
+        return RandomPolicy(space, worlds.num_envs, seed)
+    if name == "ball-follower":
+        return BallFollower(space, layout, paddle_reach(worlds) * 2 / FIELD_WIDTH)
+    # Imported on demand, for it makes worlds of its own.
+    from .planner import Planner
+
+    return Planner(worlds)

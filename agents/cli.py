@@ -5,6 +5,7 @@ which returns the exit status. It imports what is slow or optional inside `run`.
 """
 
 import argparse
+import itertools
 import sys
 from collections.abc import Sequence
 from types import ModuleType
@@ -12,7 +13,18 @@ from types import ModuleType
 from gymnasium.error import DependencyNotInstalled
 
 from .. import __version__
-from . import evaluate, play, show_levels, show_replay, train
+from . import (
+    evaluate,
+    play,
+    record,
+    report,
+    reproduce,
+    show_levels,
+    show_replay,
+    train,
+    tune,
+    watch,
+)
 from .schema import SettingsError
 
 COMMANDS: dict[str, ModuleType] = {
@@ -20,7 +32,12 @@ COMMANDS: dict[str, ModuleType] = {
     "replay": show_replay,
     "levels": show_levels,
     "train": train,
+    "reproduce": reproduce,
+    "tune": tune,
     "evaluate": evaluate,
+    "watch": watch,
+    "record": record,
+    "report": report,
 }
 # These take no settings, ``--key value``: all their options are argparse's.
 _WITHOUT_SETTINGS = {"play", "replay", "levels"}
@@ -29,6 +46,9 @@ _WITHOUT_SETTINGS = {"play", "replay", "levels"}
 _EXTRAS = {
     "PIL": "train",
     "imageio": "train",
+    "imageio_ffmpeg": "train",
+    "matplotlib": "train",
+    "optuna": "train",
     "stable_baselines3": "train",
     "tensorboard": "train",
     "torch": "train",
@@ -77,6 +97,8 @@ def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str
         key, equals, value = word.removeprefix("--").partition("=")
         if not word.startswith("--") or word in _FLAGS:
             words.append(word)
+        elif f"--{key}" in _OPTIONS:
+            words += [word] if equals else [word, *itertools.islice(rest, 1)]
         elif equals:
             overrides.append((key, value))
         else:
@@ -87,7 +109,10 @@ def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str
     return words, overrides
 
 
+# What is the commands' own, and no setting: without and with a value.
 _FLAGS = {"--help", "--version", "--json"}
+_OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
+_OPTIONS |= {"--trials"}
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,16 +1,24 @@
 """How sure a mean is: bootstrap intervals."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 RESAMPLES = 10_000
+# Of many levels at once, each of which is resampled.
+STRATIFIED_RESAMPLES = 2_000
 LEVEL = 0.95
+# Numbers that are resampled at once: their memory stays below some tens of megabytes.
+_CHUNK = 2_000_000
+
+# Takes an array [resamples, samples] and returns a number a resample.
+Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 class Interval(NamedTuple):
-    """A mean and the ends of its interval, in the unit of the data."""
+    """A mean, or another statistic, and the ends of its interval, in the unit of the data."""
 
     mean: float
     low: float
@@ -34,7 +42,53 @@ def bootstrap_interval(samples: ArrayLike, seed: int = 0) -> Interval:
         raise ValueError(
             f"samples must be a non-empty list of numbers, not of shape {values.shape}"
         )
-    chosen = np.random.default_rng(seed).integers(values.size, size=(RESAMPLES, values.size))
+    return stratified_interval(values[:, None], mean, seed, RESAMPLES)
+
+
+def stratified_interval(
+    samples: ArrayLike,
+    statistic: Statistic,
+    seed: int = 0,
+    resamples: int = STRATIFIED_RESAMPLES,
+) -> Interval:
+    """Return a statistic of samples [n, strata] with its 95 % stratified bootstrap interval.
+
+    Each stratum (a level) keeps its n samples in every resample: which of them there are is drawn
+    with replacement, for each stratum on its own. The statistic is that of all n × strata numbers
+    together (Agarwal et al., Deep Reinforcement Learning at the Edge of the Statistical Precipice,
+    2021). Raises ValueError without samples.
+    """
+    values = np.asarray(samples, dtype=np.float64)
+    if values.ndim != 2 or values.size == 0:
+        raise ValueError(f"samples must be numbers [n, strata], not of shape {values.shape}")
+    random = np.random.default_rng(seed)
+    strata = np.arange(values.shape[1])
+    at_once = max(1, _CHUNK // values.size)
+    drawn: list[NDArray[Any]] = []
+    for first in range(0, resamples, at_once):
+        count = min(at_once, resamples - first)
+        chosen = random.integers(len(values), size=(count, *values.shape))
+        drawn.append(statistic(values[chosen, strata].reshape(count, -1)))
     tail = (1 - LEVEL) / 2
-    low, high = np.quantile(values[chosen].mean(axis=1), [tail, 1 - tail])
-    return Interval(float(values.mean()), float(low), float(high))
+    low, high = np.quantile(np.concatenate(drawn), [tail, 1 - tail])
+    (point,) = statistic(values.reshape(1, -1))
+    return Interval(float(point), float(low), float(high))
+
+
+def mean(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the means of samples [resamples, n]."""
+    means: NDArray[np.float64] = samples.mean(axis=1)
+    return means
+
+
+def interquartile_mean(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the means of the middle halves of samples [resamples, n].
+
+    A quarter of the samples, rounded down, is left out at either end: outliers do not count, and
+    yet, other than in the median, half of the samples does.
+    """
+    cut = samples.shape[1] // 4
+    means: NDArray[np.float64] = np.sort(samples, axis=1)[:, cut : samples.shape[1] - cut].mean(
+        axis=1
+    )
+    return means

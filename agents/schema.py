@@ -1,9 +1,9 @@
 """Typed, validated settings: frozen dataclasses, read from TOML and from the command line.
 
 A schema is a frozen dataclass that derives from `Settings`. Its fields are numbers, text, truth
-values, lists of integers, other schemas (a table of the TOML file) or `dict[str, Any]` (a table
-that is passed on as it is). `read_settings` fills one; whatever is wrong is a `SettingsError` that
-names the place, the key, what was expected and the nearest key that exists.
+values, lists of numbers or texts, other schemas (a table of the TOML file) or `dict[str, Any]` (a
+table that is passed on as it is). `read_settings` fills one; whatever is wrong is a `SettingsError`
+that names the place, the key, what was expected and the nearest key that exists.
 """
 
 import dataclasses
@@ -95,7 +95,7 @@ class Leaf:
         if self.is_table or self.is_free:
             return "a table"
         rule = self.rule.words()
-        each = ", each " if self.kind == tuple[int, ...] else ", "
+        each = ", each " if self.kind in _ITEMS else ", "
         return _TYPE_NAMES[self.kind] + (each + rule if rule else "")
 
     def checked(self, value: Any, source: str) -> Any:
@@ -109,17 +109,17 @@ class Leaf:
 
     def parsed(self, text: str) -> Any:
         """Return the value that a command line's text means (unchecked)."""
-        return text if self.kind is str else _parse_toml_value(text)
+        return text if self.kind is str else parse_toml_value(text)
 
     def _converted(self, value: Any) -> Any:
         if self.is_free:
             if not isinstance(value, Mapping):
                 raise ValueError
             return dict(value)
-        if self.kind == tuple[int, ...]:
+        if self.kind in _ITEMS:
             if not isinstance(value, list | tuple):
                 raise ValueError
-            return tuple(self._scalar(item, int) for item in value)
+            return tuple(self._scalar(item, _ITEMS[self.kind]) for item in value)
         return self._scalar(value, self.kind)
 
     def _scalar(self, value: Any, kind: Any) -> Scalar:
@@ -141,7 +141,11 @@ _TYPE_NAMES: dict[Any, str] = {
     str: "a text",
     bool: "true or false",
     tuple[int, ...]: "a list of integers",
+    tuple[float, ...]: "a list of numbers",
+    tuple[str, ...]: "a list of texts",
 }
+# Lists, and what they are of.
+_ITEMS: dict[Any, Any] = {tuple[int, ...]: int, tuple[float, ...]: float, tuple[str, ...]: str}
 
 
 def read_settings(
@@ -176,7 +180,23 @@ def leaves(schema: type[Settings], prefix: str = "") -> Iterator[Leaf]:
 
 def to_toml(settings: Settings) -> str:
     """Return settings as a TOML document that `read_settings` reads back to equal ones."""
-    return "\n".join(_toml_lines(dataclasses.asdict(settings), ())).strip() + "\n"
+    return toml_table(dataclasses.asdict(settings))
+
+
+def toml_table(table: Mapping[str, Any]) -> str:
+    """Return a table, and the tables in it, as a TOML document."""
+    return "\n".join(_toml_lines(table, ())).strip() + "\n"
+
+
+def check_value(schema: type[Settings], key: str, value: Any, source: str) -> None:
+    """Refuse a value that a setting cannot take, and a setting that is none."""
+    known = {leaf.key: leaf for leaf in leaves(schema)}
+    table, _, name = key.partition(".")
+    if name and table in known and known[table].is_free:
+        return
+    if key not in known or known[key].is_table:
+        raise _unknown(key, known, source)
+    known[key].checked(value, source)
 
 
 def _fields(schema: type[Settings]) -> tuple[Leaf, ...]:
@@ -212,7 +232,7 @@ def _override(values: dict[str, Any], schema: type[Settings], key: str, text: st
     known = {leaf.key: leaf for leaf in leaves(schema)}
     table, _, name = key.partition(".")
     if name and table in known and known[table].is_free:
-        values[table] = {**values.get(table, known[table].default), name: _parse_toml_value(text)}
+        values[table] = {**values.get(table, known[table].default), name: parse_toml_value(text)}
     elif key not in known or known[key].is_table:
         raise _unknown(key, known, COMMAND_LINE)
     else:
@@ -246,7 +266,7 @@ def _build(schema: type[T], values: Mapping[str, Any], prefix: str = "") -> T:
     return schema(**arguments)
 
 
-def _parse_toml_value(text: str) -> Any:
+def parse_toml_value(text: str) -> Any:
     """Return what the text means in TOML, or the text itself where it means nothing there."""
     try:
         table = tomllib.loads(f"value = {text}")
@@ -263,7 +283,7 @@ def _shown(value: Any) -> str:
 def _toml_lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
     for key, value in table.items():
         if not isinstance(value, Mapping):
-            yield f"{_toml_key(key)} = {_toml_value(value)}"
+            yield f"{_toml_key(key)} = {toml_value(value)}"
     for key, value in table.items():
         if isinstance(value, Mapping):
             inner = (*path, key)
@@ -274,18 +294,19 @@ def _toml_lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str
 
 def _toml_key(key: str) -> str:
     bare = key.isascii() and key.replace("-", "").replace("_", "").isalnum()
-    return key if bare else _toml_value(key)
+    return key if bare else toml_value(key)
 
 
-def _toml_value(value: Any) -> str:
+def toml_value(value: Any) -> str:
+    """Return a value as TOML's text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         # JSON's escapes are TOML's, but TOML wants DEL escaped, too.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_toml_value, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, Mapping):
-        items = (f"{_toml_key(key)} = {_toml_value(item)}" for key, item in value.items())
+        items = (f"{_toml_key(key)} = {toml_value(item)}" for key, item in value.items())
         return "{" + ", ".join(items) + "}"
     return str(value)

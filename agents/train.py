@@ -1,4 +1,4 @@
-"""`python -m arkanoid.agents.train CONFIG [--key value ...]`: train PPO and say how good it is."""
+"""`arkanoid train CONFIG [--key value ...]`: train PPO and say how good it is."""
 
 import argparse
 import json
@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 
 from .runs import RunFolder
-from .schema import Settings, leaves
+from .schema import Settings, SettingsError, leaves
 from .settings import Experiment, load_experiment, packaged_configs
 
 DEFAULT_CONFIG = "quick"
@@ -15,36 +15,48 @@ SUMMARY = "train PPO on the game, then compare it with the baselines"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Describe the command to ``parser``."""
-    parser.usage = "%(prog)s [CONFIG] [--key value ...]"
+    parser.usage = "%(prog)s [CONFIG] [--key value ...] | --resume RUN"
     parser.add_argument(
         "config",
         metavar="CONFIG",
         nargs="?",
-        default=DEFAULT_CONFIG,
         help=f"TOML file or packaged config ({', '.join(packaged_configs())}); "
         f"default: {DEFAULT_CONFIG}",
+    )
+    parser.add_argument(
+        "--resume", metavar="RUN", help="go on with the run in this folder, from its checkpoint"
     )
     parser.epilog = "\n".join(["settings:", *_settings_help(Experiment)])
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Train, save, evaluate and record; return the exit status (130 after Ctrl-C)."""
-    experiment = load_experiment(arguments.config, overrides)
-    # Only now, with the settings known to be right, the slow imports.
-    from . import learning
-    from .episodes import adapt
+    resume = arguments.resume is not None
+    if resume:
+        if arguments.config is not None or overrides:
+            raise SettingsError("--resume goes on with the run's own settings: give no others")
+        folder = RunFolder.of(arguments.resume)
+        experiment = folder.experiment()
+    else:
+        experiment = load_experiment(arguments.config or DEFAULT_CONFIG, overrides)
+    # The environment checks its part of the settings ...
     from .worlds import make_worlds
 
-    venv = adapt(make_worlds(experiment, experiment.training.worlds))
-    model = learning.make_model(experiment, venv)
-    folder = RunFolder.create(experiment)
+    make_worlds(experiment, 1).close()
+    # ... and only now, with all of them known to be right, come the slow imports.
+    from .training import INTERRUPTED, check_resumable, train
+
+    if resume:
+        check_resumable(folder)
+    else:
+        folder = RunFolder.create(experiment)
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
-    finished = learning.train(model, experiment, folder.log)
-    learning.save_model(model, folder.model)
-    venv.close()
-    if not finished:
-        print(f"stopped after {model.num_timesteps} decisions; the model is {folder.model}")
+    outcome = train(experiment, folder, resume)
+    if outcome == INTERRUPTED:
+        print(f"stopped; the model is {folder.model}")
+        print(f"go on    arkanoid train --resume {folder.path}")
         return 130
+    print(f"training: {outcome}")
     _show(experiment, folder)
     return 0
 
@@ -52,17 +64,18 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 def _show(experiment: Experiment, folder: RunFolder) -> None:
     """Measure the saved model, record it, and print the results and where everything is."""
     from . import learning
-    from .comparison import as_json, as_table, compare
+    from .comparison import AGENT, as_json, as_tables, compare
     from .recording import record_clip
+    from .runs import ModelFile
 
-    policy = learning.load_policy(folder.model, experiment)
-    comparison = compare(experiment, policy)
-    results = json.dumps(as_json(experiment, comparison), indent=2)
-    folder.evaluation.write_text(results + "\n", encoding="utf-8")
+    model = ModelFile.find(str(folder.path))
+    policy = learning.load_policy(model.path, experiment)
+    comparison = compare(experiment, {AGENT: [policy]})
+    results = as_json(experiment, comparison, {AGENT: [model.describe()]})
+    folder.evaluation.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
     record_clip(experiment, policy, folder.picture)
-    print(f"\n{experiment.evaluation.episodes} episodes each, mean ± 95 % bootstrap interval:\n")
-    print(as_table(comparison))
-    print(f"\nmodel    {folder.model}\nlogs     {folder.log}  (tensorboard --logdir {folder.log})")
+    print(f"\n{as_tables(experiment, comparison)}\n")
+    print(f"model    {model.path}\nlogs     {folder.log}  (tensorboard --logdir {folder.log})")
     print(f"picture  {folder.picture}\nagain    arkanoid evaluate {folder.path}")
 
 

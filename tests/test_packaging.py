@@ -18,6 +18,8 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 # Folders of the root that are no packages.
 NOT_PACKAGES = ("tests/", "docs/")
 DATA = ("py.typed", ".toml", ".txt")
+# The agent that comes with the package: its settings, where it comes from, its network.
+PRETRAINED = tuple(f"agents/pretrained/{name}" for name in ("config.toml", "run.json", "model.zip"))
 
 
 def sources() -> list[str]:
@@ -99,13 +101,16 @@ def test_wheel_holds_exactly_the_package(wheel: Path) -> None:
 
 
 def test_every_file_of_the_package_is_source_or_data() -> None:
-    assert [name for name in package_files() if not name.endswith((".py", *DATA))] == []
+    assert [
+        name for name in package_files() if not name.endswith((".py", *DATA, *PRETRAINED))
+    ] == []
 
 
 def test_wheel_holds_types_experiments_and_levels(wheel: Path) -> None:
     names = contents(wheel)
     assert "arkanoid/py.typed" in names
     assert any(re.fullmatch(r"arkanoid/configs/\w+\.toml", name) for name in names)
+    assert {f"arkanoid/{name}" for name in PRETRAINED} <= set(names)
     assert any(re.fullmatch(r"arkanoid/envs/levels/\w+\.txt", name) for name in names)
 
 

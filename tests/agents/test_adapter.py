@@ -206,9 +206,43 @@ def test_options_go_to_all_worlds_at_the_next_reset_only() -> None:
     venv.set_options({"shift": 100})
     assert (venv.reset()[:, 0] > 90).all()  # type: ignore[index,call-overload]
     assert (venv.reset()[:, 0] < 90).all()  # type: ignore[index,call-overload]
-    venv.set_options([{"shift": 1}, {"shift": 2}])
-    with pytest.raises(ValueError, match="same options for all"):
-        venv.reset()
+
+
+def test_each_world_can_have_options_of_its_own() -> None:
+    """As with stable-baselines3's own vector environment, seeds included."""
+    options = [{"shift": 50}, {}, {"shift": 50}, {"shift": 80}]
+    ours, theirs = adapted(Walk, 4), DummyVecEnv([Walk] * 4)
+    for venv in (ours, theirs):
+        venv.seed(9)
+        venv.set_options(options)
+    np.testing.assert_array_equal(ours.reset(), theirs.reset())
+    assert ours.reset_infos == theirs.reset_infos
+    for _ in range(20):
+        for mine, other in zip(
+            *(each.step(np.ones(4, int))[:3] for each in (ours, theirs)), strict=True
+        ):
+            np.testing.assert_array_equal(mine, other)
+
+
+def test_statistics_go_on_where_they_were() -> None:
+    venv, other = (adapted(Walk, 3, summed_keywords=["gained"]) for _ in range(2))
+    untouched = venv.get_statistics()
+    for each in (venv, other):
+        each.seed(4)
+        each.reset()
+        for _ in range(5):
+            each.step(np.array([1, 1, 1]))
+    other.set_statistics(untouched)
+    other.set_statistics(venv.get_statistics())
+    episodes = 0
+    for _ in range(20):
+        for mine, theirs in zip(
+            *(each.step(np.ones(3, int))[3] for each in (venv, other)), strict=True
+        ):
+            episodes += bool(mine)
+            for key in ("r", "l", "gained") if mine else ():
+                assert mine["episode"][key] == theirs["episode"][key]
+    assert episodes > 3
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED])

@@ -1,6 +1,12 @@
 import numpy as np
 import pytest
-from arkanoid.agents.intervals import bootstrap_interval
+from arkanoid.agents import intervals
+from arkanoid.agents.intervals import (
+    bootstrap_interval,
+    interquartile_mean,
+    mean,
+    stratified_interval,
+)
 from scipy import stats
 
 
@@ -55,3 +61,68 @@ def test_without_a_list_of_samples_there_is_no_interval(samples: object) -> None
 def test_it_is_shown_with_half_of_its_width() -> None:
     assert str(bootstrap_interval([1234.0, 1236.0])) == "1235 ± 1"
     assert str(bootstrap_interval([0.5])) == "0.50 ± 0.00"
+
+
+def test_the_interquartile_mean_is_scipys_trimmed_mean() -> None:
+    random = np.random.default_rng(3)
+    for size in (1, 2, 3, 4, 5, 8, 13, 100):
+        samples = random.exponential(size=(7, size))
+        expected = [stats.trim_mean(row, 0.25) for row in samples]
+        np.testing.assert_allclose(interquartile_mean(samples), expected, rtol=1e-12)
+
+
+def test_of_one_stratum_the_stratified_interval_is_the_plain_one() -> None:
+    samples = np.random.default_rng(2).normal(size=40)
+    assert stratified_interval(samples[:, None], mean, resamples=10_000) == bootstrap_interval(
+        samples
+    )
+
+
+def test_strata_are_resampled_each_on_its_own() -> None:
+    """Against the closed form: the mean of strata has the mean of their variances / (n strata).
+
+    Levels differ by much more than episodes of one level, and an interval that mixed them would be
+    far too wide. The tolerance is five standard errors of 2000 resamples' percentiles, each of
+    which is 0.06 of the mean's standard error.
+    """
+    random = np.random.default_rng(8)
+    samples = random.normal(size=(400, 5)) + np.array([0, 100, 200, 300, 400])
+    interval = stratified_interval(samples, mean)
+    error = np.sqrt(samples.var(axis=0).mean() / samples.size)
+    assert interval.mean == pytest.approx(samples.mean())
+    assert abs(interval.low - (samples.mean() - 1.96 * error)) < 5 * 0.06 * error
+    assert abs(interval.high - (samples.mean() + 1.96 * error)) < 5 * 0.06 * error
+
+
+def test_the_stratified_interval_of_the_interquartile_mean() -> None:
+    """Against a plain loop over resamples, with SciPy's trimmed mean and random numbers of its own.
+
+    The tolerance is five standard errors of the difference of two percentiles of 2000 resamples.
+    """
+    random = np.random.default_rng(9)
+    samples = random.exponential(size=(10, 6)) * np.arange(1, 7)
+    drawn = []
+    for _ in range(2000):
+        columns = [random.choice(column, len(column)) for column in samples.T]
+        drawn.append(stats.trim_mean(np.concatenate(columns), 0.25))
+    low, high = np.quantile(drawn, [0.025, 0.975])
+    interval = stratified_interval(samples, interquartile_mean)
+    tolerance = 5 * 0.06 * np.sqrt(2) * np.std(drawn)
+    assert interval.mean == pytest.approx(stats.trim_mean(samples, 0.25, axis=None))
+    assert abs(interval.low - low) < tolerance
+    assert abs(interval.high - high) < tolerance
+
+
+def test_many_samples_are_resampled_in_parts_with_the_same_result(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    samples = np.random.default_rng(1).normal(size=(30, 4))
+    whole = stratified_interval(samples, interquartile_mean)
+    monkeypatch.setattr(intervals, "_CHUNK", 120 * 7)
+    assert stratified_interval(samples, interquartile_mean) == whole
+
+
+@pytest.mark.parametrize("samples", [[], [1.0, 2.0], [[]]])
+def test_without_strata_there_is_no_stratified_interval(samples: object) -> None:
+    with pytest.raises(ValueError, match=r"numbers \[n, strata\]"):
+        stratified_interval(samples, mean)  # type: ignore[arg-type]

@@ -98,6 +98,21 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
         ("env = 3", ["'env'", "a table"]),
         ("[ppo]\nbatch_size = 1000", ["'ppo.batch_size' (1000)", "8192"]),
         ("seed = ", ["not a TOML file"]),
+        ("[curriculum]\nstages = [0.5, 0.5]", ["'curriculum.stages' must rise"]),
+        ("[curriculum]\nstages = [2.0]", ["'curriculum.stages'", "each above 0 and at most 1"]),
+        ("[curriculum]\nstages = [0.5]", ["'curriculum.difficulty' or 'curriculum.rounds'"]),
+        (
+            "[curriculum]\nstages = [0.5]\nrounds = [1]",
+            ["'curriculum.rounds'", "2 stages", "not 1"],
+        ),
+        ("[curriculum]\ndifficulty = 0.5", ["'curriculum.difficulty'", "a list of numbers"]),
+        ("[validation]\nlevels = [3]", ["'validation.levels'", "a list of texts", "[3]"]),
+        ('[validation]\nbest = "hits"', ["'validation.best'", "'cleared'", "'hits'"]),
+        ("[validation]\nstop_at = 1.5", ["'validation.stop_at'", "at most 1"]),
+        ('[evaluation]\nsuites = ["all"]', ["'evaluation.suites'", "'named'", "['all']"]),
+        ('[network]\nfeatures = "planes"', ["'network.features'", "'grid'", "'vector'"]),
+        ('env = {observation = "rgb"}\nnetwork = {features = "lattice"}', ["'rgb'", "'vector'"]),
+        ("[network]\nchannels = []", ["'network.channels'", "at least one"]),
     ],
 )
 def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(

@@ -1,0 +1,1 @@
+"""The run of the agent that comes with the package."""

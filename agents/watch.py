@@ -1,0 +1,61 @@
+"""`arkanoid watch [MODEL]`: an agent at play in a window."""
+
+import argparse
+import sys
+
+from .record import add_level, add_model
+from .runs import ModelFile
+
+SUMMARY = "watch an agent play in a window"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe the command to ``parser``."""
+    parser.usage = "%(prog)s [MODEL] [--level LEVEL] [--key value ...]"
+    add_model(parser)
+    add_level(parser)
+    parser.epilog = (
+        "Games follow each other, with the evaluation's seeds, until the window is closed."
+    )
+
+
+def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
+    """Show games until the window is closed; return the exit status."""
+    model = ModelFile.find(arguments.model)
+    experiment = model.run.experiment(overrides)
+    from gymnasium.error import DependencyNotInstalled
+
+    from ..envs.window import Window
+    from .levels import find_starts
+
+    start = find_starts(experiment, arguments.level)[0] if arguments.level else None
+    from .learning import load_policy
+    from .recording import can_be_smooth, frame_rate, play_frames
+    from .settings import seeded
+
+    policy = load_policy(model.path, experiment)
+    smooth = can_be_smooth(experiment)
+    try:
+        window = Window("Arkanoid", frame_rate(experiment, smooth))
+    except DependencyNotInstalled as error:
+        print(f"arkanoid: error: {error}", file=sys.stderr)
+        return 1
+    try:
+        seed = experiment.evaluation.seed
+        while not window.closed:
+            frame = None
+            for frame in play_frames(seeded(experiment, seed), policy, start, smooth):
+                if not window.show(frame.picture):
+                    break
+            if frame is not None:
+                print(f"seed {seed}: score {frame.score}, round {frame.round}")
+            seed += 1
+    finally:
+        window.close()
+    return 0
+
+
+if __name__ == "__main__":
+    from .cli import main
+
+    sys.exit(main(["watch", *sys.argv[1:]]))

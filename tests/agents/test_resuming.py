@@ -1,0 +1,198 @@
+"""Runs that are killed, stopped, resumed and reproduced: the weights are the same, bit for bit."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from arkanoid.agents import cli
+from arkanoid.agents.curves import STEP, CurveWriter, read_curve
+from arkanoid.agents.files import write_whole
+from arkanoid.agents.runs import RunFolder
+from arkanoid.agents.settings import load_experiment
+from arkanoid.agents.training import train
+
+# All that has a state is in use: a schedule, a curriculum, validation, generated levels, sticky
+# actions; episodes are short, so that many end, some by being cut.
+RUN = {
+    "training.timesteps": "12_288",
+    "training.worlds": "16",
+    "training.checkpoint_every": "2048",
+    "ppo.n_steps": "64",
+    "ppo.batch_size": "256",
+    "ppo.n_epochs": "2",
+    "network.features": "lattice",
+    "env.levels": "train",
+    "env.sticky_action": "0.1",
+    "env.max_decisions": "150",
+    "curriculum.stages": "[0.3, 0.6]",
+    "curriculum.difficulty": "[0.1, 0.3, 0.6]",
+    "validation.every": "4096",
+    "validation.episodes": "4",
+    "evaluation.episodes": "2",
+    "evaluation.baselines": "[]",
+    "evaluation.clip_seconds": "0.5",
+    "evaluation.deterministic": "false",
+}
+# What differs from run to run: the clock.
+CLOCK = {"time/fps", "time/time_elapsed", "time/iterations"}
+
+
+def words(output: Path, **changes: str) -> list[str]:
+    settings = {**RUN, **changes, "output": str(output)}
+    return ["train", "quick", *(f"--{key}={value}" for key, value in settings.items())]
+
+
+def start(arguments: list[str]) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", f"arkanoid.agents.{arguments[0]}", *arguments[1:]],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def stop_at(process: subprocess.Popen[str], output: Path, timesteps: int, how: int) -> RunFolder:
+    """Send a signal to a training that has come so far, and wait for its end."""
+    deadline = time.monotonic() + 120
+    while not any(
+        read_curve(path)[-1:] and read_curve(path)[-1][STEP] >= timesteps
+        for path in output.glob("*/curve.jsonl")
+    ):
+        assert process.poll() is None, process.communicate()[1]
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    process.send_signal(how)
+    process.communicate(timeout=60)
+    (path,) = output.iterdir()
+    return RunFolder(path)
+
+
+def curve(run: RunFolder) -> list[dict[str, Any]]:
+    rows = read_curve(run.curve)
+    return [{key: value for key, value in row.items() if key not in CLOCK} for row in rows]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    output = tmp_path_factory.mktemp("whole")
+    assert cli.main(words(output)) == 0
+    (path,) = output.iterdir()
+    return RunFolder(path)
+
+
+def test_a_run_that_is_killed_and_resumed_is_the_run_that_was_not(
+    whole: RunFolder, tmp_path: Path
+) -> None:
+    killed = stop_at(start(words(tmp_path)), tmp_path, 5120, signal.SIGKILL)
+    assert killed.about()["outcome"] == "unfinished"
+    assert "weights" not in killed.about()
+    resumed = start(["train", "--resume", str(killed.path)])
+    _, err = resumed.communicate(timeout=120)
+    assert resumed.returncode == 0, err
+    assert killed.about()["outcome"] == "finished"
+    assert killed.about()["weights"] == whole.about()["weights"]
+    assert killed.about()["sessions"][-1]["from"] >= 4096
+    # So is all that was measured on the way: curves and the best model.
+    assert curve(killed) == curve(whole)
+    expected = json.loads(whole.evaluation.read_text())["suites"]
+    assert json.loads(killed.evaluation.read_text())["suites"] == expected
+
+
+def test_a_run_that_is_stopped_and_resumed_is_the_run_that_was_not(
+    whole: RunFolder, tmp_path: Path
+) -> None:
+    """Stopped in the middle of a rollout, which the resumed run plays again from its beginning."""
+    stopped = stop_at(start(words(tmp_path)), tmp_path, 3072, signal.SIGINT)
+    about = stopped.about()
+    assert about["outcome"] == "interrupted"
+    assert about["weights"] is None
+    assert about["timesteps"] % 1024 == 0
+    assert cli.main(["evaluate", str(stopped.path)]) == 0
+    assert cli.main(["train", "--resume", str(stopped.path)]) == 0
+    about = stopped.about()
+    assert about["weights"] == whole.about()["weights"]
+    first, second = about["sessions"]
+    assert (first["from"], first["to"]) == (0, second["from"])
+    assert second["to"] == 12_288
+
+
+def test_a_run_that_has_ended_is_not_resumed(
+    whole: RunFolder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["train", "--resume", str(whole.path)]) == 2
+    assert "nothing to resume" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [(None, "no checkpoint"), (b"PK no", "cannot be read")],
+)
+def test_a_checkpoint_that_is_missing_or_damaged_is_named(
+    content: bytes | None, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    overrides = [*RUN.items(), ("output", str(tmp_path))]
+    run = RunFolder.create(load_experiment("quick", overrides))
+    if content is not None:
+        run.checkpoint.write_bytes(content)
+    assert cli.main(["train", "--resume", str(run.path)]) == 2
+    error = capsys.readouterr().err
+    assert str(run.checkpoint) in error
+    assert message in error
+
+
+def test_a_run_is_reproduced(whole: RunFolder, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["reproduce", str(whole.path)]) == 0
+    assert "the same, bit for bit" in capsys.readouterr().out
+
+
+def test_a_run_that_cannot_be_reproduced_says_what_is_different(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    overrides = [*RUN.items(), ("output", str(tmp_path)), ("training.timesteps", "1024")]
+    experiment = load_experiment("quick", overrides)
+    run = RunFolder.create(experiment)
+    train(experiment, run)
+    versions = {**run.about()["versions"], "torch": "1.0"}
+    run.note(weights="0" * 64, versions=versions)
+    assert cli.main(["reproduce", str(run.path)]) == 1
+    out = capsys.readouterr().out
+    assert "they differ" in out
+    assert "versions.torch: '1.0' there" in out
+    run.note(weights=None)
+    assert cli.main(["reproduce", str(run.path)]) == 2
+    assert "has not ended" in capsys.readouterr().err
+
+
+def test_curves_go_on_from_the_step_of_the_checkpoint(tmp_path: Path) -> None:
+    path = tmp_path / "curve.jsonl"
+    writer = CurveWriter(path)
+    for step in (10, 20, 30):
+        writer.write({"b": 0.5 * step, "a": 1, "text": "no number"}, {}, step)
+    writer.close()
+    with path.open("a") as file:
+        file.write('{"timesteps": 40, "a"')  # killed while it wrote
+    assert [row[STEP] for row in read_curve(path)] == [10, 20, 30]
+    writer = CurveWriter(path, resumed_at=20)
+    writer.write({"a": 3}, {}, 35)
+    writer.close()
+    assert read_curve(path) == [
+        {STEP: 10, "a": 1.0, "b": 5.0},
+        {STEP: 20, "a": 1.0, "b": 10.0},
+        {STEP: 35, "a": 3.0},
+    ]
+    CurveWriter(path).close()
+    assert read_curve(path) == []
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    write_whole(path, b"first")
+    (tmp_path / "unfinished-file").write_bytes(b"left by a killed process")
+    write_whole(path, b"second")
+    assert path.read_bytes() == b"second"
+    assert list(tmp_path.iterdir()) == [path]

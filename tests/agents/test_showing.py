@@ -1,0 +1,269 @@
+"""Clips, the window, plots and reports of trained agents."""
+
+import json
+import os
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from arkanoid.agents import cli
+from arkanoid.agents.baselines import make_baseline
+from arkanoid.agents.curves import STEP
+from arkanoid.agents.episodes import play_episodes
+from arkanoid.agents.evaluate import group_by_experiment
+from arkanoid.agents.levels import find_starts
+from arkanoid.agents.page import Code, Heading, Picture, Table, Text, as_html, as_markdown
+from arkanoid.agents.plots import mean_curve
+from arkanoid.agents.provenance import weights_hash
+from arkanoid.agents.recording import can_be_smooth, frame_rate, play_frames
+from arkanoid.agents.runs import ModelFile, RunFolder
+from arkanoid.agents.schema import SettingsError
+from arkanoid.agents.settings import load_experiment
+from arkanoid.agents.training import train
+from arkanoid.agents.worlds import make_worlds
+from imageio_ffmpeg import count_frames_and_secs
+from PIL import Image
+from stable_baselines3 import PPO
+
+SMALL = [("training.timesteps", "1024"), ("training.worlds", "8"), ("ppo.n_steps", "64")]
+SMALL += [("ppo.batch_size", "256"), ("evaluation.episodes", "2"), ("env.max_decisions", "200")]
+SMALL += [("evaluation.level_episodes", "1"), ("evaluation.planner_episodes", "1")]
+SMALL += [("evaluation.suites", '["games", "named"]'), ("evaluation.clip_seconds", "1")]
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Two runs that differ in nothing but their seeds."""
+    output = ("output", str(tmp_path_factory.mktemp("runs")))
+    paths = []
+    for seed in ("0", "1"):
+        experiment = load_experiment("quick", [*SMALL, output, ("seed", seed)])
+        run = RunFolder.create(experiment)
+        train(experiment, run)
+        paths.append(str(run.path))
+    return paths
+
+
+def test_a_game_shown_tick_by_tick_is_the_game_that_is_evaluated() -> None:
+    experiment = load_experiment("quick", [("env.max_decisions", "300"), ("evaluation.seed", "77")])
+    worlds = make_worlds(experiment, 1)
+    policy = make_baseline("ball-follower", worlds, 0)
+    played = play_episodes(worlds, policy, 77)
+    frames = {smooth: list(play_frames(experiment, policy, None, smooth)) for smooth in (0, 1)}
+    decisions = int(played["steps"][0, 0])
+    # The last picture of a game that is over is that before its end.
+    assert len(frames[0]) == decisions
+    assert 4 * decisions - 4 < len(frames[1]) <= 4 * decisions
+    for decision, frame in enumerate(frames[0]):
+        np.testing.assert_array_equal(frame.picture, frames[1][4 * decision].picture)
+        assert frame[1:] == frames[1][4 * decision][1:]
+    assert frames[0][-1].score <= played["score"][0, 0]
+    assert (frame_rate(experiment, False), frame_rate(experiment, True)) == (15, 60)
+
+
+def test_a_stack_of_pictures_is_not_shown_tick_by_tick() -> None:
+    stacked = [("env.observation", "rgb"), ("env.stack", "2"), ("network.features", "auto")]
+    assert not can_be_smooth(load_experiment("quick", stacked))
+    assert not can_be_smooth(load_experiment("quick", [("env.sticky_action", "0.1")]))
+    assert can_be_smooth(load_experiment("quick"))
+
+
+def test_a_clip_begins_on_the_level_that_is_asked_for() -> None:
+    experiment = load_experiment("quick")
+    policy = make_baseline("no-op", make_worlds(experiment, 1), 0)
+    (start,) = find_starts(experiment, "comb")
+    first, other = (next(play_frames(experiment, policy, s)) for s in (None, start))
+    assert (first.round, other.round) == (1, 6)
+    assert (first.picture != other.picture).any()
+
+
+@pytest.mark.parametrize(("name", "rate"), [("x.gif", 15), ("x.mp4", 60)])
+def test_record_writes_a_clip_of_so_many_seconds(
+    runs: list[str], tmp_path: Path, name: str, rate: int
+) -> None:
+    out = tmp_path / name
+    assert cli.main(["record", runs[0], str(out), "--seconds", "2", "--level", "moat"]) == 0
+    if name.endswith(".mp4"):
+        assert count_frames_and_secs(str(out)) == (2 * rate, pytest.approx(2))
+        return
+    # A GIF shows equal pictures as one that lasts longer.
+    with Image.open(out) as clip:
+        lasting = []
+        for index in range(clip.n_frames):  # type: ignore[attr-defined]
+            clip.seek(index)
+            lasting.append(clip.info["duration"])
+    assert sum(lasting) == pytest.approx(2000, abs=10)
+    assert len(lasting) > 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["x.avi"], "x.avi"),
+        (["x.gif", "--seconds", "-1"], "--seconds"),
+        (["x.gif", "--level", "no_such"], "no_such"),
+        (["no_such_folder/x.gif"], "no_such_folder"),
+    ],
+)
+def test_a_clip_that_cannot_be_written_is_a_mistake(
+    runs: list[str], arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["record", runs[0], *arguments]) == 2
+    assert word in capsys.readouterr().err
+
+
+def test_watch_shows_games_until_the_window_is_closed(
+    runs: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from arkanoid.envs import window
+
+    shown: list[np.ndarray] = []
+
+    class Show(window.Window):
+        def show(self, frame: np.ndarray) -> bool:
+            shown.append(frame)
+            if len(shown) >= 1500:
+                self.close()
+            return super().show(frame) if len(shown) < 3 else not self.closed
+
+    monkeypatch.setitem(os.environ, "SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setattr(window, "Window", Show)
+    assert cli.main(["watch", runs[0]]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^seed 1000000: score \d+, round 1$", out, re.MULTILINE)
+    assert "seed 1000001" in out
+    assert shown[0].dtype == np.uint8
+
+
+def test_runs_that_differ_in_their_seeds_are_one_agent(runs: list[str], tmp_path: Path) -> None:
+    models = [ModelFile.find(run) for run in runs]
+    assert group_by_experiment(models, []) == {"agent": models}
+    other = load_experiment("quick", [*SMALL, ("output", str(tmp_path)), ("network.hidden", "[8]")])
+    run = RunFolder.create(other)
+    run.model.write_bytes(b"")
+    third = ModelFile.find(str(run.path))
+    assert group_by_experiment([*models, third], []) == {"quick": models, "quick#2": [third]}
+    game = RunFolder.create(replace(other, env={"lives": 1}))
+    game.model.write_bytes(b"")
+    with pytest.raises(SettingsError, match="another 'env_id' or 'env'"):
+        group_by_experiment([*models, ModelFile.find(str(game.path))], [])
+
+
+def test_a_model_given_twice_is_refused(
+    runs: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two equal models would make an interval of no width."""
+    assert cli.main(["evaluate", runs[0], runs[1], runs[0]]) == 2
+    assert "twice" in capsys.readouterr().err
+
+
+def test_evaluate_draws_plots(runs: list[str], tmp_path: Path) -> None:
+    folder = tmp_path / "plots"
+    assert cli.main(["evaluate", *runs, "--plots", str(folder)]) == 0
+    assert {path.name for path in folder.iterdir()} == {
+        "games.png",
+        "named.png",
+        "named-levels.png",
+    }
+    for path in folder.iterdir():
+        picture = iio.imread(path)
+        assert picture.ndim == 3
+        assert picture.std() > 1
+
+
+class Elements(HTMLParser):
+    """Counts elements, notes what pictures refer to, and that all is closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.sources: list[str] = []
+        self.open: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.sources += [value or "" for name, value in attrs if name in ("src", "href")]
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def test_a_report_is_one_page_that_needs_no_other_file(runs: list[str], tmp_path: Path) -> None:
+    out = tmp_path / "report.html"
+    assert cli.main(["report", *runs, "--out", str(out)]) == 0
+    text = out.read_text(encoding="utf-8")
+    page = Elements(text)
+    assert page.open == []
+    # Curves, policies of both suites, levels of the named one, and the clip.
+    assert page.tags.count("img") == 5
+    assert all(source.startswith("data:image/") for source in page.sources)
+    assert "http" not in text
+    for word in ("switchback", "planner", "interquartile", "learning_rate = 0.002", "2 training"):
+        assert word in text
+    for run in runs:
+        assert RunFolder(Path(run)).path.name in text
+
+
+def test_a_report_as_markdown_has_its_pictures_beside_it(runs: list[str], tmp_path: Path) -> None:
+    out = tmp_path / "report.md"
+    arguments = ["--evaluation.suites", '["games"]', "--evaluation.baselines", '["no-op"]']
+    assert cli.main(["report", runs[0], "--out", str(out), *arguments]) == 0
+    names = re.findall(r"!\[[^]]*\]\(([^)]*)\)", out.read_text(encoding="utf-8"))
+    assert names == ["report/curves.png", "report/games.png", "report/play.gif"]
+    for name in names:
+        assert (tmp_path / name).stat().st_size > 1000
+
+
+def test_a_page_escapes_what_it_shows(tmp_path: Path) -> None:
+    parts = [
+        Heading("a < b", 1),
+        Text("x & y"),
+        Code("<tag>"),
+        Table((("head", "<1>"), ("row", "2"))),
+        Picture("p.png", b"bytes", 'say "hi"'),
+    ]
+    text = as_html(parts)
+    assert "<tag>" not in text
+    assert "a &lt; b" in text
+    assert Elements(text).open == []
+    markdown = as_markdown(parts, tmp_path / "page.md")
+    assert "| head | <1> |\n| --- | ---: |\n| row | 2 |" in markdown
+    assert (tmp_path / "page" / "p.png").read_bytes() == b"bytes"
+
+
+def test_the_mean_curve_is_read_at_the_same_decisions() -> None:
+    """Of straight lines the mean is a straight line, however often each was measured."""
+    curves = [
+        [{STEP: step, "y": slope * step, "x": 0} for step in range(first, 1000, every)]
+        for slope, first, every in ((1.0, 10, 10), (3.0, 0, 37))
+    ]
+    steps, means, lows, highs = mean_curve(curves, "y")
+    assert (steps[0], steps[-1]) == (10, 990)
+    np.testing.assert_allclose(means, 2 * steps)
+    # Of two runs a resample is of one, of the other, or of both.
+    np.testing.assert_allclose(lows, steps)
+    np.testing.assert_allclose(highs, 3 * steps)
+
+
+def test_without_a_model_the_packaged_agent_plays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was trained from scratch by `arkanoid train quick`, and is far above all baselines."""
+    arguments = ["--evaluation.episodes", "20", "--evaluation.suites", '["games"]']
+    assert cli.main(["evaluate", "--json", *arguments]) == 0
+    results = json.loads(capsys.readouterr().out)["suites"]["games"]["policies"]
+    agent, follower = (results[name]["summary"] for name in ("agent", "ball-follower"))
+    assert agent["cleared"]["mean"]["mean"] >= 0.9
+    assert agent["hits"]["mean"]["low"] > 1.5 * follower["hits"]["mean"]["high"]
+    assert cli.main(["record", str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
+    about = ModelFile.find(None).run.about()
+    assert about["outcome"] == "finished"
+    state = PPO.load(ModelFile.find(None).path, device="cpu").policy.state_dict()
+    assert weights_hash(state) == about["weights"]

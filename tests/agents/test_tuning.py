@@ -1,0 +1,119 @@
+"""The search for hyper-parameters: spaces, studies that go on, and their best settings."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import optuna
+import pytest
+from arkanoid.agents import cli
+from arkanoid.agents.schema import SettingsError, read_settings
+from arkanoid.agents.settings import Experiment, packaged_configs
+from arkanoid.agents.tuning import best_as_toml, load_space, open_study
+
+SPACE = """
+measure = "score"
+startup = 1
+[parameters]
+"ppo.learning_rate" = { low = 1e-4, high = 1e-2, log = true }
+"ppo.n_epochs" = { low = 1, high = 2 }
+"ppo.gamma" = { low = 0.9, high = 1.0, step = 0.05 }
+"network.hidden" = { choices = [[8], [16, 16]] }
+"env.life_penalty" = { choices = [0.1, 0.2] }
+"""
+SMALL = ["--training.timesteps", "2048", "--training.worlds", "8", "--ppo.n_steps", "64"]
+SMALL += ["--ppo.batch_size", "256", "--validation.every", "1024", "--validation.episodes", "2"]
+SMALL += ["--env.max_decisions", "150"]
+
+
+def space_file(folder: Path, text: str = SPACE) -> str:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_a_search_goes_on_where_it_was_and_prints_the_best(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["tune", "quick", *SMALL, "--space", space_file(tmp_path)]
+    arguments += ["--study", str(tmp_path / "study")]
+    assert cli.main([*arguments, "--trials", "2"]) == 0
+    first = capsys.readouterr().out
+    assert "0 trials so far" in first
+    assert cli.main([*arguments, "--trials", "4"]) == 0
+    out = capsys.readouterr().out
+    assert "2 trials so far" in out
+    assert re.findall(r"^trial (\d+)", out, re.MULTILINE) == ["2", "3"]
+    # A study that has as many trials as it should only tells the best.
+    assert cli.main([*arguments, "--trials", "4"]) == 0
+    again = capsys.readouterr().out
+    best = again[again.index("# score") :]
+    assert out.endswith(best)
+    table = tomllib.loads(best)
+    # What is printed is a part of a config.
+    experiment = read_settings(Experiment, table, "best")
+    assert 1e-4 <= experiment.ppo.learning_rate <= 1e-2
+    assert experiment.network.hidden in ((8,), (16, 16))
+    assert experiment.env["life_penalty"] in (0.1, 0.2)
+    study = open_study(tmp_path / "study", load_space(space_file(tmp_path)), 0)
+    value = max(
+        trial.value or 0.0
+        for trial in study.trials
+        if trial.state == optuna.trial.TrialState.COMPLETE
+    )
+    assert best.startswith(f"# score {value:.4f}")
+    # Each trial is a run like any other.
+    assert len(list((tmp_path / "study").glob("trial*/run.json"))) == 4
+
+
+def test_settings_that_do_not_go_together_are_no_trial(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = space_file(tmp_path, '[parameters]\n"ppo.batch_size" = { choices = [300, 330] }')
+    arguments = ["tune", "quick", *SMALL, "--space", path, "--study", str(tmp_path / "study")]
+    assert cli.main([*arguments, "--trials", "2"]) == 2
+    out, err = capsys.readouterr()
+    assert "'ppo.batch_size'" in out
+    assert "no trial is complete" in err
+
+
+def test_the_packaged_space_is_valid_and_no_config() -> None:
+    assert packaged_configs(".space.toml") == ["ppo"]
+    assert "ppo" not in packaged_configs()
+    space = load_space("ppo")
+    assert {"ppo.learning_rate", "network.hidden"} <= {p.key for p in space.parameters}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", ["[parameters]"]),
+        ("mesure = 3", ["unknown key 'mesure'", "measure"]),
+        ('measure = "hits"', ["'measure'", "'hits'"]),
+        ("startup = -1", ["'startup'", "-1"]),
+        ('[parameters]\n"ppo.gama" = {low = 0.1, high = 0.2}', ["'ppo.gama'", "'ppo.gamma'"]),
+        ('[parameters]\n"ppo.gamma" = 3', ["'ppo.gamma'", "a table"]),
+        ('[parameters]\n"ppo.gamma" = {low = 0.1}', ["'ppo.gamma'", "'low' and 'high'"]),
+        ('[parameters]\n"ppo.gamma" = {low = 0.1, high = 2.0}', ["'ppo.gamma'", "at most 1"]),
+        ('[parameters]\n"ppo.gamma" = {low = 0.2, high = 0.1}', ["'low' the smaller"]),
+        ('[parameters]\n"ppo.gamma" = {low = 0.0, high = 1.0, log = true}', ["'log'", "above 0"]),
+        ('[parameters]\n"ppo.gamma" = {choices = []}', ["'ppo.gamma'", "'choices'"]),
+        ('[parameters]\n"ppo.gamma" = {choices = [0.5, "x"]}', ["'ppo.gamma'", "'x'"]),
+        ('[parameters]\n"network.activation" = {choices = ["rellu"]}', ["'relu'", "'rellu'"]),
+    ],
+)
+def test_a_wrong_space_is_named_with_what_is_right(
+    tmp_path: Path, text: str, words: list[str]
+) -> None:
+    path = space_file(tmp_path, text)
+    with pytest.raises(SettingsError) as caught:
+        load_space(path)
+    assert path in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_without_a_complete_trial_there_is_no_best(tmp_path: Path) -> None:
+    space = load_space("ppo")
+    with pytest.raises(SettingsError, match="no trial is complete"):
+        best_as_toml(open_study(tmp_path, space, 0), space)

@@ -1,0 +1,198 @@
+"""What happens in the course of a training: validation, the curriculum, networks' features."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from arkanoid.agents.curves import STEP, read_curve
+from arkanoid.agents.episodes import adapt
+from arkanoid.agents.learning import load_policy, make_model
+from arkanoid.agents.networks import LatticeExtractor, PlanesExtractor
+from arkanoid.agents.provenance import weights_hash
+from arkanoid.agents.runs import RunFolder
+from arkanoid.agents.settings import Curriculum, Experiment, load_experiment, packaged_configs
+from arkanoid.agents.stages import stage_at, stage_options
+from arkanoid.agents.training import train
+from arkanoid.agents.worlds import make_worlds, native
+from gymnasium import spaces
+from stable_baselines3 import PPO
+
+SMALL = [("training.timesteps", "6144"), ("training.worlds", "16"), ("ppo.n_steps", "64")]
+SMALL += [("ppo.batch_size", "256"), ("ppo.n_epochs", "1"), ("env.max_decisions", "150")]
+
+
+def small(output: Path, *overrides: tuple[str, str]) -> Experiment:
+    return load_experiment("quick", [*SMALL, *overrides, ("output", str(output))])
+
+
+def trained(experiment: Experiment, **arguments: Any) -> tuple[str, RunFolder]:
+    run = RunFolder.create(experiment)
+    return train(experiment, run, **arguments), run
+
+
+@pytest.mark.parametrize("deterministic", ["true", "false"])
+def test_validation_changes_no_weight(tmp_path: Path, deterministic: str) -> None:
+    """Also where it draws its actions: it must draw no number that the training would draw."""
+    draws = ("evaluation.deterministic", deterministic)
+    every = (("validation.every", "2048"), ("validation.episodes", "3"))
+    outcomes = [trained(small(tmp_path, draws, *more)) for more in ((), every)]
+    hashes = [run.about()["weights"] for _, run in outcomes]
+    assert hashes[0] == hashes[1]
+    assert not outcomes[0][1].best.exists()
+    assert outcomes[1][1].best.exists()
+
+
+def test_patience_ends_the_training(tmp_path: Path) -> None:
+    seen: list[tuple[int, float]] = []
+
+    def judge(step: int, means: dict[str, float]) -> None:
+        seen.append((step, means["return"]))
+
+    # Nothing is ever cleared, so that no measurement is better than the first one.
+    options = (("validation.every", "1024"), ("validation.episodes", "2"))
+    options += (("validation.best", "cleared"), ("validation.patience", "2"))
+    outcome, run = trained(small(tmp_path, *options), on_measure=judge)
+    assert outcome == "2 measurements without a better one at 3072 decisions"
+    assert [step for step, _ in seen] == [1024, 2048, 3072]
+    assert run.about()["outcome"] == outcome
+    assert run.about()["timesteps"] == 3072
+    # Of equals the latest is the best.
+    best = PPO.load(run.best, device="cpu").policy.state_dict()
+    assert weights_hash(best) == run.about()["weights"]
+
+
+def test_the_best_model_is_that_of_the_best_measurement(tmp_path: Path) -> None:
+    """A run that ends there has the same weights."""
+    constant = ("ppo.schedule", "constant")
+    options = (("validation.every", "1024"), ("validation.episodes", "2"), constant)
+    _, run = trained(small(tmp_path, *options))
+    measured = {
+        row["validation/return"]: row[STEP]
+        for row in read_curve(run.curve)
+        if "validation/return" in row
+    }
+    step = str(measured[max(measured)])
+    _, shorter = trained(small(tmp_path, ("training.timesteps", step), constant))
+    best = PPO.load(run.best, device="cpu").policy.state_dict()
+    assert weights_hash(best) == shorter.about()["weights"]
+
+
+def test_a_cleared_rate_ends_the_training(tmp_path: Path) -> None:
+    """A level with a few bricks low down, which even an untrained policy clears now and then."""
+    level = tmp_path / "easy.txt"
+    rows = ["...........", "...www....."]
+    level.write_text("name: Easy\ncomment: For a test.\n\n" + "\n".join(rows) + "\n")
+    options = (("env.levels", str(level)), ("env.lives", "50"), ("env.max_decisions", "27000"))
+    options += (("validation.every", "1024"), ("validation.stop_at", "0.01"))
+    options += (("validation.levels", f'["{level}"]'), ("evaluation.deterministic", "false"))
+    outcome, run = trained(small(tmp_path, *options))
+    assert outcome.startswith("cleared rate ")
+    assert run.about()["weights"] is not None
+
+
+def test_stages_begin_at_their_parts_of_the_training() -> None:
+    curriculum = Curriculum(stages=(0.25, 0.5), rounds=(1, 2, 3), difficulty=(0.2, 0.4, 1.0))
+    parts = (0.0, 0.24, 0.25, 0.49, 0.5, 1.0)
+    assert [stage_at(curriculum, part) for part in parts] == [0, 0, 1, 1, 2, 2]
+    options = stage_options(curriculum, 2, 4)
+    assert [option["level"] for option in options] == [1, 2, 3, 1]
+    assert [option["difficulty"] for option in options] == [0.25, 0.5, 0.75, 1.0]
+    assert stage_options(Curriculum(), 0, 2) == [{}, {}]
+
+
+def test_the_curriculum_reaches_the_worlds(tmp_path: Path) -> None:
+    experiment = small(tmp_path)
+    experiment = replace(experiment, curriculum=Curriculum(rounds=(3,)))
+    venv = adapt(make_worlds(experiment, 16))
+    venv.set_options(stage_options(experiment.curriculum, 0, 16))
+    venv.reset()
+    assert [info["round"] for info in venv.reset_infos] == [1 + world % 3 for world in range(16)]
+
+
+def test_the_lattice_is_seen_as_the_picture_that_it_is() -> None:
+    """A convolution that looks at one cell finds it where the observation has it."""
+    experiment = load_experiment("quick")
+    layout = native(make_worlds(experiment, 1)).layout
+    length = max(part.stop for part in layout.values())
+    bricks = layout["bricks"]
+    extractor = LatticeExtractor(
+        spaces.Box(-1, 1, (length,), np.float32), (bricks.start, bricks.stop), (1,), 4, "relu"
+    )
+    seen: list[torch.Tensor] = []
+    convolution = next(m for m in extractor.modules() if isinstance(m, torch.nn.Conv2d))
+    convolution.register_forward_pre_hook(lambda module, given: seen.append(given[0]))
+    observations = torch.arange(2 * length, dtype=torch.float32).reshape(2, length)
+    features = extractor(observations)
+    assert features.shape == (2, extractor.features_dim) == (2, length - 198 + 4)
+    np.testing.assert_array_equal(
+        seen[0].numpy(), observations[:, bricks].numpy().reshape(2, 1, 18, 11)
+    )
+    outside = np.delete(observations.numpy(), np.r_[bricks], axis=1)
+    np.testing.assert_array_equal(features.detach().numpy()[:, : length - 198], outside)
+
+
+def test_planes_of_any_size_become_features() -> None:
+    for shape in ((3, 28, 11), (1, 7, 5), (12, 1, 1)):
+        space = spaces.Box(0, 1, shape, np.float32)
+        extractor = PlanesExtractor(space, (4, 8), 16, "tanh")
+        assert extractor(torch.zeros(5, *shape)).shape == (5, 16)
+
+
+def test_a_lattice_of_another_size_is_refused() -> None:
+    with pytest.raises(ValueError, match="198 cells; the slice has 3"):
+        LatticeExtractor(spaces.Box(-1, 1, (9,), np.float32), (2, 5), (4,), 4, "relu")
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        [],
+        [("env.observation", "grid")],
+        [("env.observation", "rgb"), ("env.grey", "true"), ("env.stack", "2")],
+        [("env.observation", "rgb")],
+        [("env.actions", "box")],
+    ],
+    ids=str,
+)
+def test_the_network_suits_the_observation(
+    tmp_path: Path, overrides: list[tuple[str, str]]
+) -> None:
+    """Trained, saved and loaded again, it plays as it did."""
+    options = [("network.features", "auto"), ("training.timesteps", "1024")]
+    experiment = small(tmp_path, *options, *overrides)
+    _, run = trained(experiment)
+    worlds = make_worlds(experiment, 4)
+    observations, _ = worlds.reset(seed=0)
+    actions = load_policy(run.model, experiment)(observations, np.arange(4))
+    assert worlds.action_space.contains(actions)
+    assert run.model.stat().st_size < 20_000_000
+
+
+def test_a_saved_model_holds_no_optimiser_state(tmp_path: Path) -> None:
+    experiment = small(tmp_path, ("training.timesteps", "1024"))
+    _, run = trained(experiment)
+    loaded = PPO.load(run.model, device="cpu")
+    assert loaded.policy.optimizer.state_dict()["state"] == {}
+    again = make_model(experiment, adapt(make_worlds(experiment, 16)))
+    assert [p.shape for p in again.policy.parameters()] == [
+        p.shape for p in loaded.policy.parameters()
+    ]
+
+
+@pytest.mark.parametrize("name", packaged_configs())
+def test_every_packaged_config_can_be_trained(name: str, tmp_path: Path) -> None:
+    """With all that it asks for, curriculum and validation, but for a moment only."""
+    overrides = [("training.worlds", "4"), ("training.timesteps", "192"), ("ppo.n_steps", "16")]
+    overrides += [
+        ("ppo.batch_size", "64"),
+        ("validation.every", "64"),
+        ("validation.episodes", "1"),
+    ]
+    overrides += [("env.max_decisions", "30"), ("output", str(tmp_path))]
+    outcome, run = trained(load_experiment(name, overrides))
+    assert outcome == "finished"
+    assert run.best.is_file()
+    assert run.about()["timesteps"] == 192
