@@ -1,99 +1,256 @@
-"""Steps a second of the game, lite and full, by threads and observations, and by `gym.make`.
+"""Steps a second of the environments beside MinAtar, ale-py and a native Breakout.
 
-Run: python tests/benchmarks/throughput.py [--worlds 1024] [--seconds 2]
+Run: python tests/benchmarks/throughput.py [--quick] [--only-ours]
+
+Everything is measured in one run, with random actions, after the games have drifted apart; what a
+section compares takes turns. The peers come with `pip install -e ".[bench]"`; a row says so where
+one is missing. docs/performance.md says what the rows mean.
 """
 
 import argparse
 import os
+import platform
 import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.metadata import version
+from types import ModuleType
 
-import arkanoid  # noqa: F401
-import gymnasium as gym
-import numpy as np
+from games import PEERS, Game, arkanoid_games, peer
 
-
-def rate(step: Callable[[], Any], seconds: float) -> float:
-    """Return calls a second, after a warm-up, as the best of five slices of the time."""
-    for _ in range(20):
-        step()
-    best = 0.0
-    for _ in range(5):
-        calls, start = 0, time.perf_counter()
-        while time.perf_counter() - start < seconds / 5:
-            step()
-            calls += 1
-        best = max(best, calls / (time.perf_counter() - start))
-    return best
-
-
-GAMES = ("ArkanoidLite-v0", "Arkanoid-v0")
-# With the goals in steps a second, of one core at a frame skip of 4.
-OBSERVATIONS: list[tuple[dict[str, Any], int | None]] = [
-    ({"observation": "vector"}, None),
-    ({"observation": "grid"}, None),
-    ({"observation": "rgb", "grey": True}, 225_000),
-    ({"observation": "rgb", "grey": True, "stack": 4}, 100_000),
-    ({"observation": "rgb"}, None),
-]
+WORLDS, FEW, MANY = 1024, 128, 4096
+# An emulator takes the same time whatever happens and however many they are.
+EMULATORS = 16
+LITE, FULL = "ArkanoidLite-v0", "Arkanoid-v0"
+TURBO = "env-breakoutatari2600-turbo-native"
+PICTURES = {"observation": "rgb", "grey": True}
+WARM_UP = 500  # decisions: some episodes of random actions, so that all stages of one are met
+GAIN = 1.7  # the goal of two threads
+SHORTER = 40  # both cores are rarely left alone for longer than some milliseconds
+LABEL = 62  # characters
+Clock = Callable[[], float]
+Peers = dict[str, ModuleType | None]
 
 
-def native_rate(game: str, worlds: int, seconds: float, **keywords: Any) -> float:
-    """Return the steps a second of all worlds of the native vector env, random actions."""
-    env = gym.make_vec(
-        game, worlds, "vector_entry_point", actions="discrete3", copy=False, **keywords
+@dataclass(frozen=True)
+class Effort:
+    """How long to measure."""
+
+    warm_up: int  # decisions
+    turns: int
+    turn: float  # seconds
+
+    def shorter(self, times: int) -> "Effort":
+        """Return as many times the turns, each of them so much shorter."""
+        return replace(self, turns=self.turns * times, turn=self.turn / times)
+
+
+THOROUGH = Effort(WARM_UP, turns=7, turn=0.4)
+QUICK = Effort(WARM_UP // 10, turns=2, turn=0.05)
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is measured.
+
+    Args:
+        label: what it is called.
+        make: makes it; None: its package is not installed.
+        mark: of ours, a letter by which other rows refer to it.
+        beside: the mark of the row of ours that it is compared with.
+        goal: steps a second to reach.
+        part: of the rate of the row ``beside``, to reach.
+    """
+
+    label: str
+    make: Callable[[], Game] | None
+    mark: str = ""
+    beside: str = ""
+    goal: float | None = None
+    part: float | None = None
+
+
+class Turns:
+    """A game's best rate among those of several turns."""
+
+    def __init__(self, game: Game, effort: Effort, clock: Clock) -> None:
+        self.game = game
+        self.clock = clock
+        game.play(effort.warm_up)
+        self.rate = 0.0
+        self.decisions = 1
+        while self.measure() < effort.turn / 2:
+            self.decisions *= 2
+        self.rate = 0.0
+
+    def measure(self) -> float:
+        """Take a turn; return its seconds."""
+        start = self.clock()
+        self.game.play(self.decisions)
+        seconds = self.clock() - start
+        if seconds > 0:
+            self.rate = max(self.rate, self.decisions * self.game.worlds / seconds)
+        return seconds
+
+
+def rates(games: Sequence[Game], effort: Effort, clock: Clock) -> list[float]:
+    """Return each game's steps a second; they take turns."""
+    all_turns = [Turns(game, effort, clock) for game in games]
+    for _ in range(effort.turns):
+        for turns in all_turns:
+            turns.measure()
+    for game in games:
+        game.close()
+    return [turns.rate for turns in all_turns]
+
+
+def show_section(title: str, rows: Sequence[Row], effort: Effort) -> None:
+    """Measure rows on one core, in seconds of the processor, and print them."""
+    print(f"\n{title}", flush=True)
+    present = [row for row in rows if row.make is not None]
+    games = [row.make() for row in present if row.make is not None]
+    # Of the process: a peer's own threads count.
+    results = dict(zip(present, rates(games, effort, time.process_time), strict=True))
+    marked = {row.mark: rate for row, rate in results.items() if row.mark}
+    for row in rows:
+        if row in results:
+            show(row.mark, row.label, results[row], verdict(row, results[row], marked))
+        else:
+            print(f"     {row.label:{LABEL}}{'not installed':>12}", flush=True)
+
+
+def verdict(row: Row, rate: float, marked: dict[str, float]) -> str:
+    """Return what the last column says of a row."""
+    if row.goal is not None:
+        return f"goal {row.goal:,.0f}: {met(rate >= row.goal)}"
+    if row.part is not None:
+        share = rate / marked[row.beside]
+        return f"{share:.2f} x {row.beside}, goal {row.part:g}: {met(share >= row.part)}"
+    if row.beside:
+        return f"{row.beside} is {marked[row.beside] / rate:,.1f} x as fast"
+    return ""
+
+
+def met(good: bool) -> str:
+    return "met" if good else "MISSED"
+
+
+def show(mark: str, label: str, rate: float, said: str) -> None:
+    print(f"  {mark:2} {label:{LABEL}}{rate:12,.0f}   {said}".rstrip(), flush=True)
+
+
+@contextmanager
+def one_core() -> Iterator[str]:
+    """Keep this process on one core, where that can be done; give a word about it."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield "not pinned to a core"
+        return
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(cores)})
+    try:
+        yield "one core"
+    finally:
+        os.sched_setaffinity(0, cores)
+
+
+def made(module: ModuleType | None, function: str, *values: int) -> Callable[[], Game] | None:
+    """Return what makes a peer's game; None if the peer is not installed."""
+    return None if module is None else partial(getattr(module, function), *values)
+
+
+def numbers(peers: Peers) -> list[Row]:
+    """Return the rows of observations that are numbers."""
+    many = partial(partial, arkanoid_games.many)
+    minatar = peers["MinAtar"]
+    return [
+        Row(f"{LITE}, vector, frame skip 1", many(LITE, WORLDS, frame_skip=1), "a", goal=6e6),
+        Row(f"{LITE}, vector", many(LITE, WORLDS), "b", goal=2.7e6),
+        Row(f"{FULL}, vector, frame skip 1", many(FULL, WORLDS, frame_skip=1), "c", "a", part=0.5),
+        Row(f"{FULL}, vector", many(FULL, WORLDS), "d", "b", part=0.5),
+        Row(f"{LITE}, grid", many(LITE, WORLDS, observation="grid"), "e"),
+        Row(f"{FULL}, grid", many(FULL, WORLDS, observation="grid"), "f"),
+        Row("MinAtar's own class, one world", made(minatar, "own"), beside="b"),
+    ]
+
+
+def pictures(peers: Peers) -> list[Row]:
+    """Return the rows of pictures."""
+    many = partial(partial, arkanoid_games.many, FULL, **PICTURES)
+    ale, turbo = peers["ale-py"], peers[TURBO]
+    return [
+        Row(f"{FULL}", many(WORLDS), "g", goal=225e3),
+        Row(f"{FULL}, stack of 4", many(WORLDS, stack=4), "h", goal=100e3),
+        Row(f"{FULL}, {FEW} worlds", many(FEW), "i"),
+        Row(f"{FULL}, {FEW} worlds, stack of 4", many(FEW, stack=4), "j"),
+        Row(TURBO, made(turbo, "many", WORLDS, 1), beside="g"),
+        Row(f"{TURBO}, stack of 4", made(turbo, "many", WORLDS, 4), beside="h"),
+        Row(f"{TURBO}, {FEW} worlds", made(turbo, "many", FEW, 1), beside="i"),
+        Row(f"{TURBO}, {FEW} worlds, stack of 4", made(turbo, "many", FEW, 4), beside="j"),
+        Row(f"ale-py, {EMULATORS} worlds", made(ale, "many", EMULATORS, 1), beside="g"),
+        Row(f"ale-py, {EMULATORS} worlds, stack of 4", made(ale, "many", EMULATORS, 4), beside="h"),
+    ]
+
+
+def single(peers: Peers) -> list[Row]:
+    """Return the rows of one world."""
+    one = partial(partial, arkanoid_games.one)
+    return [
+        Row(f"{LITE}, vector", one(LITE), "k", goal=200e3),
+        Row(f"{FULL}, vector", one(FULL), "l", goal=200e3),
+        Row(f"{FULL}, rgb in grey", one(FULL, **PICTURES), "m"),
+        Row("MinAtar", made(peers["MinAtar"], "one"), beside="k"),
+        Row("ale-py, AtariPreprocessing", made(peers["ale-py"], "one"), beside="m"),
+        Row(f"{TURBO}, gym.make_vec", made(peers[TURBO], "many", 1, 1), beside="m"),
+    ]
+
+
+def show_threads(effort: Effort) -> None:
+    """Measure one and two threads, in seconds of the clock, and print how much two gain."""
+    print(
+        f"\nTwo threads, {WORLDS} worlds, frame skip 4, two cores, seconds of the clock", flush=True
     )
-    env.reset(seed=0)
-    actions = np.random.default_rng(0).integers(0, 3, (64, worlds))
-    turn = iter(range(10**12))
-    result = rate(lambda: env.step(actions[next(turn) % 64]), seconds) * worlds
-    env.close()
-    return result
-
-
-def single_rate(game: str, seconds: float) -> float:
-    """Return the steps a second of one env with the default wrappers, resets included."""
-    env = gym.make(game)
-    env.reset(seed=0)
-    actions = np.random.default_rng(0).integers(0, env.action_space.n, 64).tolist()
-    turn = iter(range(10**12))
-
-    def step() -> None:
-        _, _, terminated, truncated, _ = env.step(actions[next(turn) % 64])
-        if terminated or truncated:
-            env.reset()
-
-    return rate(step, seconds)
+    for label, worlds, keywords in (
+        ("vector", WORLDS, {}),
+        (f"vector, {MANY} worlds", MANY, {}),
+        ("rgb in grey", WORLDS, PICTURES),
+    ):
+        for name in (LITE, FULL):
+            games = [arkanoid_games.many(name, worlds, threads, **keywords) for threads in (1, 2)]
+            one, two = rates(games, effort, time.perf_counter)
+            said = f"{two / one:.2f} x one thread"
+            if worlds == WORLDS:
+                said += f", goal {GAIN}: {met(two / one >= GAIN)}"
+            show("", f"{name}, {label}", two, said)
 
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--worlds", type=int, default=1024)
-    parser.add_argument("--seconds", type=float, default=2.0, help="for each row")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--quick", action="store_true", help="for a tenth of the time")
+    parser.add_argument("--only-ours", action="store_true", help="without the peers")
     options = parser.parse_args()
-    print(f"{options.worlds} worlds, vector observations but where it says so, random actions\n")
-    print(f"{'':58}{'steps/s':>14}{'ticks/s':>14}")
-    for game in GAMES:
-        one = 0.0
-        for frame_skip in (1, 4):
-            for threads in sorted({1, os.cpu_count() or 1}):
-                steps = native_rate(
-                    game, options.worlds, options.seconds, frame_skip=frame_skip, threads=threads
-                )
-                one = steps if threads == 1 else one
-                name = f"{game}, native, frame_skip={frame_skip}, threads={threads}"
-                ratio = "" if threads == 1 else f"   {steps / one:.2f} x one thread"
-                print(f"{name:58}{steps:14,.0f}{steps * frame_skip:14,.0f}{ratio}", flush=True)
-        steps = single_rate(game, options.seconds)
-        name = f"{game}, one gym.make env, default wrappers"
-        print(f"{name:58}{steps:14,.0f}{steps * 4:14,.0f}", flush=True)
-    for keywords, goal in OBSERVATIONS:
-        steps = native_rate("Arkanoid-v0", options.worlds, options.seconds, threads=1, **keywords)
-        name = "Arkanoid-v0, native, " + ", ".join(f"{k}={v}" for k, v in keywords.items())
-        ratio = "" if goal is None else f"   {steps / goal:.2f} x the goal"
-        print(f"{name:58}{steps:14,.0f}{steps * 4:14,.0f}{ratio}", flush=True)
+    effort = QUICK if options.quick else THOROUGH
+    peers = {name: None if options.only_ours else peer(name) for name in PEERS}
+    packages = ["numba", "gymnasium", *(name for name, module in peers.items() if module)]
+    versions = (f"{package} {version(package)}" for package in packages)
+    print(platform.machine(), f"Python {platform.python_version()}", *versions, sep=", ")
+    if hasattr(os, "getloadavg"):
+        print(f"load of the {os.cpu_count()} cores by other programs: {os.getloadavg()[0]:.1f}")
+    print(f"{'':{LABEL + 5}}{'steps/s':>12}")
+    sections = {
+        f"Numbers, {WORLDS} worlds, frame skip 4": numbers(peers),
+        f"Pictures, 84 x 84 in grey, {WORLDS} worlds, frame skip 4": pictures(peers),
+        "One world, gym.make, frame skip 4": single(peers),
+    }
+    with one_core() as core:
+        for title, rows in sections.items():
+            shown = [row for row in rows if row.mark or not options.only_ours]
+            show_section(f"{title}, {core}", shown, effort)
+    show_threads(effort.shorter(SHORTER))
 
 
 if __name__ == "__main__":
