@@ -178,10 +178,8 @@ def vertex_on_edge(
 def check(seed: int, count: int, scale: float = 1.0) -> None:
     """Compare random flights of all pairs of kinds, relatively to 1e-12.
 
-    Nothing can be better than the coordinates' own rounding. Corners lie up to 4 from the origin,
-    where a double's last digit is up to 9e-16; turning rounds each of a pair's two about twice. So
-    a length may be off by 4e-15, and a flight shorter than 4e-3 counts as one of that length. (It
-    was 1e-3: of 20 000 flights one of 1.8e-3 erred by 2.4e-15.)
+    Nothing can be better than the coordinates' own rounding: a flight shorter than a thousandth of
+    the shapes' size counts as one of that length.
     """
     rng = np.random.default_rng(seed)
     pool = [random_exact(rng, kind, scale) for kind in range(7) for _ in range(6)]
@@ -201,7 +199,7 @@ def check(seed: int, count: int, scale: float = 1.0) -> None:
             misses += 1
             continue
         exact_time, (exact_x, exact_y) = truth
-        shortest = 4e-3 * scale / math.hypot(vx, vy)
+        shortest = 1e-3 * scale / math.hypot(vx, vy)
         assert abs(time - exact_time) <= 1e-12 * max(exact_time, shortest)
         assert abs(nx - exact_x) <= 1e-12
         assert abs(ny - exact_y) <= 1e-12
