@@ -135,7 +135,8 @@ class Config:
             if name not in known:
                 near = get_close_matches(name, known, 1)
                 hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}."
-                raise TypeError(f"unknown environment keyword {name!r}; {hint}")
+                # In Python's own words: TorchRL tries a keyword and looks for them (`GymEnv`).
+                raise TypeError(f"got an unexpected keyword argument {name!r}; {hint}")
         return cls(**keywords)
 
     def plain(self) -> dict[str, Any]:

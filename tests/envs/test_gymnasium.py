@@ -214,6 +214,23 @@ def test_bad_keywords_are_refused(keywords, error, message):
         ArkanoidVectorEnv(2, **keywords)
 
 
+def test_an_unknown_keyword_is_refused_in_pythons_own_words():
+    """TorchRL's `GymEnv` could not make the environment.
+
+    It tries the keyword ``frameskip``, and goes on without it if the `TypeError` is the one that a
+    function with plain arguments raises. Ours had words of its own.
+    """
+
+    def plain():
+        pass
+
+    with pytest.raises(TypeError) as expected:
+        plain(frameskip=1)
+    words = str(expected.value).partition("() ")[2]
+    with pytest.raises(TypeError, match=words):
+        gym.make("Arkanoid-v0", frameskip=1)
+
+
 def test_bad_arguments_of_the_vector_env_are_refused():
     with pytest.raises(ValueError, match="num_envs"):
         ArkanoidVectorEnv(0)
