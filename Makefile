@@ -28,12 +28,14 @@ lint: $(VENV)/dev  ## Check style and format
 	$(BIN)/ruff format --check .
 
 # A type checker finds a package by the name of its folder, and a clone's may be any: so a folder
-# `arkanoid` with links to the packages is made.
+# `arkanoid` with links to the packages is made (where there are no links, with copies).
 types: $(VENV)/dev  ## Check types
 	rm -rf build/types && mkdir -p build/types/arkanoid
 	for name in py.typed *.py */__init__.py; do \
-		ln -s "$(CURDIR)/$${name%/__init__.py}" build/types/arkanoid || exit; done
+		source="$(CURDIR)/$${name%/__init__.py}"; \
+		ln -s "$$source" build/types/arkanoid || cp -R "$$source" build/types/arkanoid || exit; done
 	$(BIN)/mypy
+	$(BIN)/basedpyright --pythonpath $(BIN)/python
 
 format: $(VENV)/dev  ## Put the sources into format, mend what can be mended
 	$(BIN)/ruff check --fix .

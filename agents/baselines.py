@@ -17,6 +17,7 @@ class Policy(Protocol):
 
     def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
         """Return actions [n, ...] for observations [n, ...] of the worlds of these indices [n]."""
+        ...
 
 
 def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArray[Any]:

@@ -70,7 +70,13 @@ def _write_mp4(path: Path, pictures: Iterator[Picture], rate: float) -> None:
         ) from None
     first = next(pictures)
     height, width, _ = first.shape
-    writer = write_frames(path, (width, height), fps=rate, quality=_QUALITY, macro_block_size=2)
+    writer = write_frames(
+        path,
+        (width, height),
+        fps=rate,  # pyright: ignore[reportArgumentType] (guessed from the default, a whole number)
+        quality=_QUALITY,
+        macro_block_size=2,
+    )
     with contextlib.closing(writer):
         writer.send(None)
         for picture in itertools.chain([first], pictures):

@@ -164,7 +164,7 @@ class ModelFile:
 
 def pretrained_run() -> Path:
     """Return the folder of the agent that comes with the package."""
-    return Path(str(resources.files(__package__))) / PRETRAINED
+    return Path(str(resources.files(__name__.rpartition(".")[0]))) / PRETRAINED
 
 
 def _new_folder(parent: Path, stem: str) -> Path:

@@ -264,4 +264,4 @@ def _read_config(config: str, suffix: str) -> tuple[str, str]:
 
 
 def _configs_package() -> str:
-    return f"{__package__.rpartition('.')[0]}.configs"
+    return f"{__name__.rsplit('.', 2)[0]}.configs"

@@ -31,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Train, save, evaluate and record; return the exit status (130 after Ctrl-C)."""
-    resume = arguments.resume is not None
-    if resume:
+    folder = None
+    if arguments.resume is not None:
         if arguments.config is not None or overrides:
             raise SettingsError("--resume goes on with the run's own settings: give no others")
         folder = RunFolder.of(arguments.resume)
@@ -46,10 +46,11 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     # ... and only now, with all of them known to be right, come the slow imports.
     from .training import INTERRUPTED, check_resumable, train
 
-    if resume:
-        check_resumable(folder)
-    else:
+    resume = folder is not None
+    if folder is None:
         folder = RunFolder.create(experiment)
+    else:
+        check_resumable(folder)
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
     outcome = train(experiment, folder, resume)
     if outcome == INTERRUPTED:

@@ -38,6 +38,7 @@ class Observer(Protocol):
 
     def clone(self) -> "Observer":
         """Return one that shows the same in arrays of its own, and shares what never changes."""
+        ...
 
     def part(self, worlds: Any, rules: Any, share: slice) -> Observe:
         """Return what observes a share of the worlds: those of a mask, bool [worlds in it].
@@ -46,6 +47,7 @@ class Observer(Protocol):
             worlds: `World` records, all of the batch.
             rules: `Rules` [1].
         """
+        ...
 
 
 def make_observer(config: "Config", num_worlds: int) -> Observer:

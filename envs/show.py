@@ -45,6 +45,7 @@ class Show(Protocol):
 
     def picture(self) -> NDArray[np.uint8]:
         """Return what is to be seen now, uint8 [height, width, 3]."""
+        ...
 
 
 def screen_height() -> int:

@@ -8,13 +8,12 @@ go of the block.
 
 from typing import Any
 
-import numba
 import numpy as np
 from numba.core import types
 from numba.core.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
-from .compilation import accessor
+from .compilation import accessor, is_interpreted
 
 
 def _numpy_view(memory: Any, start: int, count: int, dtype: Any) -> Any:
@@ -46,7 +45,7 @@ def _borrowed_view(typing_context: Any, memory: Any, start: Any, count: Any, dty
     return array_type(memory, types.intp, types.intp, dtype), generate
 
 
-_view: Any = _numpy_view if numba.config.DISABLE_JIT else _borrowed_view
+_view: Any = _numpy_view if is_interpreted() else _borrowed_view
 
 
 @accessor

@@ -141,9 +141,13 @@ class AxisAlignedRectangle(Collider):
         _set(self, "width", positive("width", self.width))
         _set(self, "height", positive("height", self.height))
 
-    @cached_property
+    @property
     def edges(self) -> tuple[BoundaryEdge, ...]:
         """Right, upper, left and lower side."""
+        return self._edges
+
+    @cached_property
+    def _edges(self) -> tuple[BoundaryEdge, ...]:
         return _rectangle_edges(self.width, self.height, (1.0, 0.0))
 
 
@@ -167,9 +171,13 @@ class Rectangle(Collider):
         _set(self, "height", positive("height", self.height))
         _set(self, "rotation", finite("rotation", self.rotation))
 
-    @cached_property
+    @property
     def edges(self) -> tuple[BoundaryEdge, ...]:
         """Its sides, that toward its first axis first."""
+        return self._edges
+
+    @cached_property
+    def _edges(self) -> tuple[BoundaryEdge, ...]:
         return _rectangle_edges(self.width, self.height, turned_axis(self.rotation))
 
 

@@ -28,12 +28,12 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from pickle import UnpicklingError
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 from uuid import uuid4
 
 import numba
 import platformdirs
-from numba.core import event
+from numba.core import event as events
 from numba.core.caching import FunctionCache
 from numba.core.registry import CPUDispatcher
 
@@ -50,6 +50,13 @@ _SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")
 _PACKAGE = __name__.rpartition(".physics.")[0]
 _PACKAGE_FOLDER = Path(__file__).resolve().parent.parent
 _FOLDER_NAME = re.compile("[0-9a-f]{16}")
+# Numba says that it is typed and hardly is, differently in every release.
+_numba = cast(Any, numba)
+
+
+def is_interpreted() -> bool:
+    """Return whether kernels are plain Python functions (``NUMBA_DISABLE_JIT=1``)."""
+    return bool(_numba.config.DISABLE_JIT)
 
 
 def kernel(function: F) -> F:
@@ -74,25 +81,25 @@ def inner(function: F) -> F:
     That way, through which every argument is taken apart, is a good part of a small kernel's code.
     """
     compiled = _compile(function, _nrt=False, no_cpython_wrapper=True)
-    if not numba.config.DISABLE_JIT:
-        compiled.__class__ = _Inner
+    if not is_interpreted():
+        cast(Any, compiled).__class__ = _Inner
     return compiled
 
 
 class _Inner(CPUDispatcher):  # type: ignore[misc]
     """A kernel that has no way in from Python."""
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
         """Refuse; without this, the process would crash."""
         raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
 
 
 def _compile(function: F, **options: bool) -> F:
     """Return the dispatcher of a function, with its cache (or the function, if not compiled)."""
-    if numba.config.DISABLE_JIT:
+    if is_interpreted():
         return function
     # No C function either, which nobody calls.
-    compiled: F = numba.njit(
+    compiled: F = _numba.njit(
         function, nogil=True, error_model="numpy", no_cfunc_wrapper=True, **options
     )
     _compile_once_for_literals(compiled)
@@ -108,9 +115,9 @@ def inlined(function: F) -> F:
     For what is called in one place only: a function of its own is compiled again as a part of each
     one above it, which in a deep tree of calls takes longer than all the rest.
     """
-    if numba.config.DISABLE_JIT:
+    if is_interpreted():
         return function
-    joined: F = numba.njit(function, nogil=True, error_model="numpy", inline="always")
+    joined: F = _numba.njit(function, nogil=True, error_model="numpy", inline="always")
     return joined
 
 
@@ -146,12 +153,12 @@ def cache_folder(file: Path) -> Path | None:
 def _cache_in(folder: Path, compiled: Any) -> None:
     """Let a dispatcher keep its machine code in ``folder``."""
     # Numba takes the folder of a function's cache from this setting when the cache is made.
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    previous = _numba.config.CACHE_DIR
+    _numba.config.CACHE_DIR = str(folder)
     try:
         compiled._cache = _Cache(compiled.py_func)
     finally:
-        numba.config.CACHE_DIR = previous
+        _numba.config.CACHE_DIR = previous
 
 
 class _Cache(FunctionCache):  # type: ignore[misc]
@@ -166,10 +173,10 @@ class _Cache(FunctionCache):  # type: ignore[misc]
         stem = self._impl.filename_base
         self._cache_file._data_name = lambda number: f"{stem}.{uuid4().hex[:16]}.nbc"
 
-    def load_overload(self, signature: Any, context: Any) -> Any:
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Load the machine code for one signature; None if there is none that can be read."""
         try:
-            return super().load_overload(signature, context)
+            return super().load_overload(sig, target_context)
         except (EOFError, UnpicklingError):  # a file was cut short, by a power failure, say
             with suppress(OSError):
                 self.flush()
@@ -177,10 +184,10 @@ class _Cache(FunctionCache):  # type: ignore[misc]
         except OSError:
             return None
 
-    def save_overload(self, signature: Any, data: Any) -> None:
+    def save_overload(self, sig: Any, data: Any) -> None:
         """Save the machine code for one signature, or go on without."""
         try:
-            super().save_overload(signature, data)
+            super().save_overload(sig, data)
         except OSError as error:
             _say_unwritable(Path(self.cache_path).parents[1], error)
 
@@ -228,7 +235,7 @@ def _last_edit(file: Path) -> float:
 @cache
 def _digest(file: Path) -> str:
     """Return the digest of all that the machine code of a file's kernels is made from."""
-    settings = [getattr(numba.config, name) for name in _SETTINGS]
+    settings = [getattr(_numba.config, name) for name in _SETTINGS]
     compiler = f"{numba.__version__} {sys.implementation.cache_tag} {settings}"
     digest = hashlib.sha256(compiler.encode())
     for source in sorted(_import_closure(file)):
@@ -298,7 +305,7 @@ def _say_unwritable(folder: Path, error: OSError) -> None:
     )
 
 
-class _Attendant(event.Listener):  # type: ignore[misc]
+class _Attendant(events.Listener):  # type: ignore[misc]
     """Says on stderr, once a process, that the wait is for the compiler, and shortens it.
 
     The compiler makes millions of small objects and little garbage: the collector of cycles, which
@@ -309,20 +316,20 @@ class _Attendant(event.Listener):  # type: ignore[misc]
         self._depth = 0  # kernels that are compiled for kernels that are compiled
         self._collected = False  # garbage was, before
 
-    def on_start(self, compiling: Any) -> None:
+    def on_start(self, event: Any) -> None:
         """Tell of the first kernel of this package that is compiled."""
-        if compiling.data["dispatcher"].py_func.__module__.startswith(f"{_PACKAGE}."):
+        if event.data["dispatcher"].py_func.__module__.startswith(f"{_PACKAGE}."):
             _say_once("compiling kernels for this machine (once; up to 20 s) ...")
         if self._depth == 0:
             self._collected = gc.isenabled()
             gc.disable()
         self._depth += 1
 
-    def on_end(self, compiling: Any) -> None:
+    def on_end(self, event: Any) -> None:
         """Let garbage be collected again."""
         self._depth -= 1
         if self._depth == 0 and self._collected:
             gc.enable()
 
 
-event.register("numba:compile", _Attendant())
+events.register("numba:compile", _Attendant())

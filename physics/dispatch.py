@@ -125,7 +125,7 @@ def _is_swapped(shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float) -
     """Return whether the pair is computed as (b, a): by kind, then position, then data."""
     kind_a = shapes[a].kind
     kind_b = shapes[b].kind
-    swapped: bool = SWAPPED[kind_a, kind_b]
+    swapped = bool(SWAPPED[kind_a, kind_b])
     if kind_a == kind_b:
         swapped = dx < 0.0 or (dx == 0.0 and dy < 0.0)
         if dx == 0.0 and dy == 0.0:

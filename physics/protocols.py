@@ -17,6 +17,7 @@ class Collidable(Protocol):
     @property
     def collider(self) -> Collider:
         """The shape, in body coordinates."""
+        ...
 
     @property
     def position(self) -> Any:

@@ -160,10 +160,11 @@ def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
     for a in open_ones[traits["slot"][open_ones] >= 0]:
         for b in open_ones:
             one, other = traits[a], traits[b]
-            meets = one.category & other.mask and other.category & one.mask
-            if a == b or not meets or one.inverse_mass + other.inverse_mass == 0.0:
+            meets = one["category"] & other["mask"] and other["category"] & one["mask"]
+            if a == b or not meets or one["inverse_mass"] + other["inverse_mass"] == 0.0:
                 continue
-            depth = contact_between(shapes, setup.edges, one.collider, other.collider, 0.0, 0.0)[3]
+            pair = int(one["collider"]), int(other["collider"])
+            depth = contact_between(shapes, setup.edges, *pair, 0.0, 0.0)[3]
             if depth == math.inf:
                 return int(a), int(b)
     return None
