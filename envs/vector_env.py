@@ -203,7 +203,9 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
-        self._batch.close()
+        # Gymnasium before 1.3 closes what is deleted, an environment whose keywords were refused, too.
+        if hasattr(self, "_batch"):
+            self._batch.close()
 
     def _seed(self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]) -> None:
         """Seed the masked worlds; one never seeded gets a seed from the system's entropy."""

@@ -247,6 +247,17 @@ def test_bad_arguments_of_the_vector_env_are_refused():
         env.reset(options={"levle": 1})
 
 
+def test_an_env_whose_keywords_were_refused_is_closed_in_silence():
+    """Gymnasium 1.2 closes a vector environment when it is deleted, also one that was never made.
+
+    After a misspelt keyword's own error there was a second one, "Exception ignored in
+    VectorEnv.__del__: no attribute '_batch'", where RLlib's pinned Gymnasium was installed.
+    """
+    never_made = ArkanoidVectorEnv.__new__(ArkanoidVectorEnv)
+    never_made.close()
+    assert never_made.closed
+
+
 @pytest.mark.parametrize("action", [-1, 6])
 def test_illegal_actions_are_refused(action):
     env = ArkanoidEnv()
