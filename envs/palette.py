@@ -7,64 +7,69 @@ the seven of capsules, so that they can be told apart in greyscale and by eyes t
 import numpy as np
 from numpy.typing import NDArray
 
+from .rules import BRICK_LETTERS, CAPSULES, ENEMY_KINDS, POWERS
+
 # Brightness of red, green and blue (ITU-R BT.601), the weights of most greyscale conversions.
 LUMA = np.array([0.299, 0.587, 0.114])
 
 # The bricks' rows: a body's colour at its upper and lower edge, its lit and its shaded edges; add
 # the brick's kind.
+_KINDS = len(BRICK_LETTERS)
 BRICK = 0
-BRICK_FOOT = 11
-BRICK_LIT = 22
-BRICK_SHADED = 33
+BRICK_FOOT = BRICK + _KINDS
+BRICK_LIT = BRICK_FOOT + _KINDS
+BRICK_SHADED = BRICK_LIT + _KINDS
 # The capsules' rows, likewise: body, lit and shaded edge, and the letter; add the capsule's kind.
-CAPSULE = 44
-CAPSULE_LIT = 52
-CAPSULE_SHADED = 60
-LETTER = 68
+CAPSULE = BRICK_SHADED + _KINDS
+CAPSULE_LIT = CAPSULE + CAPSULES + 1
+CAPSULE_SHADED = CAPSULE_LIT + CAPSULES + 1
+LETTER = CAPSULE_SHADED + CAPSULES + 1
 # The paddle's rows: its body and its ends at their upper and lower side; add the power.
-PADDLE_LIT = 76
-PADDLE_SHADED = 80
-GRIP_LIT = 84
-GRIP_SHADED = 88
+PADDLE_LIT = LETTER + CAPSULES + 1
+PADDLE_SHADED = PADDLE_LIT + POWERS + 1
+GRIP_LIT = PADDLE_SHADED + POWERS + 1
+GRIP_SHADED = GRIP_LIT + POWERS + 1
 # The enemies' rows: upper and lower side, and rim; add the enemy's kind.
-ENEMY_LIT = 92
-ENEMY_SHADED = 96
-ENEMY_RIM = 100
+ENEMY_LIT = GRIP_SHADED + POWERS + 1
+ENEMY_SHADED = ENEMY_LIT + ENEMY_KINDS
+ENEMY_RIM = ENEMY_SHADED + ENEMY_KINDS
 # The boss's rows: upper and lower side; add the step of its damage.
-BOSS_LIT = 104
-BOSS_SHADED = 108
 BOSS_STEPS = 4
-FRAME = 112
-FIELD_UPPER = 113
-FIELD_LOWER = 114
-PATTERN = 115
-WALL_LIT = 116
-WALL = 117
-WALL_SHADED = 118
-RIVET = 119
-BALL = 120
-BALL_RIM = 121
-LABEL = 122
-VALUE = 123
-SHINE = 124
-CRACK = 125
-MUZZLE = 126
-BEAM = 127
-BEAM_CORE = 128
-EYE = 129
-PUPIL = 130
-BOSS_RIM = 131
-BOSS_FACE = 132
-BOSS_BROW = 133
-BOSS_EYE = 134
-BOSS_GLOW = 135
-SHARD_RIM = 136
-SHARD = 137
-DOOR = 138
-SEAM = 139
-OPENING = 140
-LAMP = 141
-ARROW = 142
+BOSS_LIT = ENEMY_RIM + ENEMY_KINDS
+BOSS_SHADED = BOSS_LIT + BOSS_STEPS
+# A row each, in the order of `_OTHERS`.
+_FIRST = BOSS_SHADED + BOSS_STEPS
+FRAME = _FIRST
+FIELD_UPPER = _FIRST + 1
+FIELD_LOWER = _FIRST + 2
+PATTERN = _FIRST + 3
+WALL_LIT = _FIRST + 4
+WALL = _FIRST + 5
+WALL_SHADED = _FIRST + 6
+RIVET = _FIRST + 7
+BALL = _FIRST + 8
+BALL_RIM = _FIRST + 9
+LABEL = _FIRST + 10
+VALUE = _FIRST + 11
+SHINE = _FIRST + 12
+CRACK = _FIRST + 13
+MUZZLE = _FIRST + 14
+BEAM = _FIRST + 15
+BEAM_CORE = _FIRST + 16
+EYE = _FIRST + 17
+PUPIL = _FIRST + 18
+BOSS_RIM = _FIRST + 19
+BOSS_FACE = _FIRST + 20
+BOSS_BROW = _FIRST + 21
+BOSS_EYE = _FIRST + 22
+BOSS_GLOW = _FIRST + 23
+SHARD_RIM = _FIRST + 24
+SHARD = _FIRST + 25
+DOOR = _FIRST + 26
+SEAM = _FIRST + 27
+OPENING = _FIRST + 28
+LAMP = _FIRST + 29
+ARROW = _FIRST + 30
 
 _BRICKS = [
     (0, 0, 0),  # no brick
