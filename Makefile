@@ -3,19 +3,25 @@
 
 VENV ?= .venv
 BIN = $(VENV)/bin
+# (Refused in a variable's value: there another make reads over it, and on to its own message.)
+COLON = :
+CHECKED := $(if $(filter-out 1,$(words $(VENV))$(findstring $(COLON),$(VENV))),\
+	$(error VENV must be a path without spaces and colons, but is '$(VENV)'))
 # The first Python that is new enough.
-PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11 python; do \
+PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11 python; do \
 	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done)
-INSTALL = $(BIN)/python -m pip install --constraint constraints.txt --editable
+# An environment that was interrupted while it was made, or is another tool's, may lack pip.
+INSTALL = $(BIN)/python -c 'import pip' 2>/dev/null || $(BIN)/python -m ensurepip; \
+	$(BIN)/python -m pip install --constraint constraints.txt --editable
 # What decides which packages are installed, and what an editable install remembers.
 REQUIREMENTS = pyproject.toml constraints.txt version.py
 
 .DEFAULT_GOAL = help
-.PHONY: help train test lint types format check bench clean
+.PHONY: help train test lint types format check distcheck bench clean
 
 help:  ## Show the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
 
 train: $(VENV)/train  ## Train an agent for about two minutes, and show how it does
 	$(BIN)/arkanoid train quick
@@ -32,14 +38,18 @@ lint: $(VENV)/dev  ## Check style and format
 types: $(VENV)/dev  ## Check types
 	rm -rf build/types && mkdir -p build/types/arkanoid
 	for name in py.typed *.py */__init__.py; do \
-		source="$(CURDIR)/$${name%/__init__.py}"; \
-		ln -s "$$source" build/types/arkanoid || cp -R "$$source" build/types/arkanoid || exit; done
+		name=$${name%/__init__.py}; ln -s "../../../$$name" build/types/arkanoid || \
+			cp -R "$$name" build/types/arkanoid || exit; done
 	$(BIN)/mypy
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
 
 format: $(VENV)/dev  ## Put the sources into format, mend what can be mended
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+# The same for what is published, each installed in a fresh environment.
+distcheck: $(VENV)/dev  ## Build wheel and sdist, and run the tests against each
+	$(BIN)/python tests/distributions.py $(PYTEST)
 
 check: lint types test  ## All of lint, types and test
 
@@ -61,6 +71,11 @@ $(VENV)/dev: $(REQUIREMENTS) | $(BIN)/python
 $(VENV)/bench: $(REQUIREMENTS) | $(BIN)/python
 	$(INSTALL) '.[bench]'
 	touch $@
+
+# Another make than GNU's takes the sign of an order-only prerequisite for a file, and makes it.
+|:
+	@echo 'This Makefile needs GNU make; where make is another, GNU make is often called gmake.' \
+		>&2; exit 1
 
 $(BIN)/python:
 	@test -n '$(PYTHON)' || { echo 'arkanoid needs Python 3.11 or newer, and none was found.' \
