@@ -5,6 +5,7 @@ which returns the exit status. It imports what is slow or optional inside `run`.
 """
 
 import argparse
+import io
 import itertools
 import sys
 from collections.abc import Sequence
@@ -63,6 +64,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     0: done; 1: an extra is missing, or a replay is not what was played; 2: the user's mistake;
     130: Ctrl-C.
     """
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # A letter that the terminal or file does not know is no reason to lose what was measured.
+        sys.stdout.reconfigure(errors="replace")
     words = list(sys.argv[1:] if argv is None else argv)
     overrides: list[tuple[str, str]] = []
     if not words or words[0] not in _WITHOUT_SETTINGS:

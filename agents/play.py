@@ -115,7 +115,11 @@ def free_path(path: Path) -> Path:
 
 
 def _replay_folder() -> Path:
-    return Path(platformdirs.user_data_dir("arkanoid", False)) / "replays"
+    """Return the user's folder for games; one here, if the user has no home (as in containers)."""
+    try:
+        return Path(platformdirs.user_data_dir("arkanoid", False)).expanduser() / "replays"
+    except RuntimeError:
+        return Path("replays")
 
 
 if __name__ == "__main__":

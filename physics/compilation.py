@@ -141,13 +141,24 @@ def _compile_once_for_literals(compiled: Any) -> None:
 def cache_folder(file: Path) -> Path | None:
     """Return the folder for the machine code of the kernels of one source file.
 
-    None if there is no such file (the function was typed at a prompt or lies in an archive), or if
-    sources were edited since this process began and need not be what it has imported.
+    None if there is no such file (the function was typed at a prompt or lies in an archive), if
+    sources were edited since this process began and need not be what it has imported, or if there
+    is no folder for caches.
     """
     if not file.is_file() or _last_edit(file.resolve()) > _BEGAN:
         return None
-    root = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("arkanoid", False)
-    return Path(root).absolute() / "kernels" / _digest(file.resolve())
+    root = _cache_root()
+    return root and root / "kernels" / _digest(file.resolve())
+
+
+def _cache_root() -> Path | None:
+    """Return the folder that is named, or else the user's; None if the user has no home."""
+    try:
+        root = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_dir("arkanoid", False)
+        return Path(root).expanduser().absolute()
+    except RuntimeError as error:  # an unknown user without HOME, as containers have them
+        _say_uncached(f"There is no cache folder ({error})")
+        return None
 
 
 def _cache_in(folder: Path, compiled: Any) -> None:
@@ -299,9 +310,13 @@ def _say_once(line: str) -> None:
 
 
 def _say_unwritable(folder: Path, error: OSError) -> None:
+    _say_uncached(f"{folder} cannot be written ({error.strerror})")
+
+
+def _say_uncached(why: str) -> None:
     _say_once(
-        f"{folder} cannot be written ({error.strerror}), so every process compiles the kernels "
-        f"anew. Set {CACHE_VARIABLE} to a folder that can."
+        f"{why}, so every process compiles the kernels anew. Set {CACHE_VARIABLE} to a folder "
+        "that can be written."
     )
 
 

@@ -61,6 +61,19 @@ def report(result):
     compiled = [e.data["dispatcher"].py_func.__name__ for _, e in recorder.buffer if e.is_start]
     print(json.dumps([result, compiled]))
 """
+NOBODY = """
+import os
+for name in ("HOME", "USERPROFILE", "HOMEPATH", "HOMEDRIVE", "XDG_CACHE_HOME", "LOCALAPPDATA"):
+    os.environ.pop(name, None)
+try:
+    import pwd
+except ModuleNotFoundError:
+    pass
+else:
+    def getpwuid(uid):
+        raise KeyError(uid)
+    pwd.getpwuid = getpwuid
+"""
 CALL = "from arkanoid.envs.caller import shifted; report(shifted(10.0))"
 
 
@@ -233,6 +246,26 @@ report(shifted(10.0))
     assert outcome.result == 21.0
     assert sum("ARKANOID_CACHE_DIR" in line for line in outcome.stderr.splitlines()) == 1
     assert not list(scratch.code.rglob("*.nb[ci]"))
+
+
+@pytest.mark.parametrize("variable", ["", "~/cache"])
+def test_goes_on_for_a_user_without_a_home(scratch: Scratch, variable: str) -> None:
+    """As in a container that runs under any number: `import arkanoid.physics` raised an error.
+
+    Who is asked where the home is, is made to know nobody; ``~/cache`` became a folder named "~".
+    """
+    outcome = scratch.run(NOBODY + CALL, ARKANOID_CACHE_DIR=variable)
+    assert outcome.result == 21.0
+    assert sum("ARKANOID_CACHE_DIR" in line for line in outcome.stderr.splitlines()) == 1
+    assert not list(scratch.code.rglob("*.nb[ci]"))
+
+
+def test_home_may_be_named_by_its_sign(scratch: Scratch) -> None:
+    """In a file of settings or a container's, no shell puts the home in place of ``~``."""
+    home = str(scratch.code.parent)
+    scratch.run(ARKANOID_CACHE_DIR="~/cache", HOME=home, USERPROFILE=home)
+    assert scratch.folders()
+    assert not (scratch.code / "~").exists()
 
 
 @pytest.mark.parametrize("suffix", ["nbi", "nbc"])
