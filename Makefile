@@ -18,7 +18,7 @@ INSTALL = $(BIN)/python -c 'import pip' 2>/dev/null || $(BIN)/python -m ensurepi
 REQUIREMENTS = pyproject.toml constraints.txt version.py
 
 .DEFAULT_GOAL = help
-.PHONY: help train test lint types format check distcheck bench clean
+.PHONY: help train test lint types format docs check distcheck bench clean
 
 help:  ## Show the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -51,7 +51,10 @@ format: $(VENV)/dev  ## Put the sources into format, mend what can be mended
 distcheck: $(VENV)/dev  ## Build wheel and sdist, and run the tests against each
 	$(BIN)/python tests/distributions.py $(PYTEST)
 
-check: lint types test  ## All of lint, types and test
+docs: $(VENV)/docs  ## Make the documentation's site, build/docs/index.html
+	$(BIN)/sphinx-build -W --keep-going -q -E -c docs/site -d build/doctrees docs build/docs
+
+check: lint types docs test  ## All of lint, types, docs and test
 
 bench: $(VENV)/bench  ## Run the benchmarks
 	for benchmark in tests/benchmarks/*.py; do $(BIN)/python $$benchmark || exit; done
@@ -67,6 +70,10 @@ $(VENV)/train: $(REQUIREMENTS) | $(BIN)/python
 $(VENV)/dev: $(REQUIREMENTS) | $(BIN)/python
 	$(INSTALL) '.[dev]'
 	touch $@ $(VENV)/train
+
+$(VENV)/docs: $(REQUIREMENTS) | $(BIN)/python
+	$(INSTALL) '.[docs]'
+	touch $@
 
 $(VENV)/bench: $(REQUIREMENTS) | $(BIN)/python
 	$(INSTALL) '.[bench]'

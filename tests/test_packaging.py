@@ -20,6 +20,10 @@ NOT_PACKAGES = ("tests/", "docs/")
 DATA = ("py.typed", ".toml", ".txt")
 # The agent that comes with the package: its settings, where it comes from, its network.
 PRETRAINED = tuple(f"agents/pretrained/{name}" for name in ("config.toml", "run.json", "model.zip"))
+LONGEST_PATH = 120  # letters, of the 260 that a whole path may have on Windows
+RESERVED = re.compile(
+    r'[\x00-\x1f<>:"\\|?*]|[ .](/|$)|(^|/)(con|prn|aux|nul|com\d|lpt\d)(\.|/|$)', re.I
+)
 
 
 def sources() -> list[str]:
@@ -160,6 +164,28 @@ def version() -> str:
     return str(ast.literal_eval(assignment.value))
 
 
+def test_every_system_can_hold_the_files() -> None:
+    """Windows refuses some letters, some names and long paths; there and on macOS A is a."""
+    names = sources()
+    assert len({name.lower() for name in names}) == len(names)
+    assert [name for name in names if len(name) > LONGEST_PATH or RESERVED.search(name)] == []
+
+
+def test_every_requirement_has_its_pin() -> None:
+    """What `make` installs is one set of versions, without a hole."""
+    listed = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pinned = {canonical(line.partition("==")[0]) for line in listed if not line.startswith("#")}
+    project = PROJECT["project"]
+    wanted = project["dependencies"] + sum(project["optional-dependencies"].values(), [])
+    names = {canonical(re.split(r"[\[<>=;]", requirement)[0]) for requirement in wanted}
+    assert names - pinned == {"arkanoid"}
+
+
+def canonical(name: str) -> str:
+    """Return the one of a package's many spellings that compares."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
 def test_version_is_in_one_place(wheel: Path) -> None:
     assert "version" not in PROJECT["project"]
     assert wheel.name.startswith(f"arkanoid-{version()}-")
@@ -175,7 +201,7 @@ def test_every_subpackage_is_listed() -> None:
 
 def test_extras_for_developing_hold_those_for_users() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
-    assert set(extras) == {"train", "play", "bench", "dev"}
+    assert set(extras) == {"train", "play", "bench", "docs", "dev"}
     assert "arkanoid[train,play]" in extras["dev"]
 
 
@@ -183,6 +209,6 @@ def test_constraints_are_portable() -> None:
     """A pin such as ``torch==2.13.0+cpu`` names a build that the package index does not have."""
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     pins = [line for line in lines if not line.startswith("#")]
-    assert [pin for pin in pins if not re.fullmatch(r"[\w-]+==[\d.]+", pin)] == []
+    assert [pin for pin in pins if not re.fullmatch(r"[\w-]+==[\w.]+", pin)] == []
     assert "torch==2.13.0" in pins
     assert "nvidia" not in " ".join(pins)
