@@ -176,8 +176,9 @@ def test_every_requirement_has_its_pin() -> None:
     listed = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     pinned = {canonical(line.partition("==")[0]) for line in listed if not line.startswith("#")}
     project = PROJECT["project"]
-    wanted = project["dependencies"] + sum(project["optional-dependencies"].values(), [])
-    names = {canonical(re.split(r"[\[<>=;]", requirement)[0]) for requirement in wanted}
+    groups = [project["dependencies"], *project["optional-dependencies"].values()]
+    wanted = [re.split(r"[\[<>=;]", requirement)[0] for group in groups for requirement in group]
+    names = set(map(canonical, wanted))
     assert names - pinned == {"arkanoid"}
 
 

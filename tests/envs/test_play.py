@@ -1,6 +1,5 @@
 """Playing by hand and looking at replays: keys and mouse, pauses, what is kept."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -558,7 +557,7 @@ def test_closing_the_window_ends_the_show() -> None:
 def test_signals_end_the_show_between_two_pictures(number: signal.Signals) -> None:
     before = signal.getsignal(number)
     stage = Stage(
-        lambda: os.kill(os.getpid(), number), lambda: None, lambda: None, lambda: None, lambda: None
+        lambda: signal.raise_signal(number), lambda: None, lambda: None, lambda: None, lambda: None
     )
     assert run_show(stage, "test", FAST)
     assert signal.getsignal(number) is before
@@ -673,7 +672,7 @@ def after(ticks: int, deed: Callable[[Any], object]) -> Callable[[Any], None]:
     [
         (lambda sitting: sitting.press(Key.QUIT), 0),
         (lambda sitting: post("QUIT")(), 0),
-        (lambda sitting: os.kill(os.getpid(), signal.SIGINT), 130),
+        (lambda sitting: signal.raise_signal(signal.SIGINT), 130),
     ],
     ids=["escape", "window closed", "Ctrl-C"],
 )
@@ -907,7 +906,7 @@ def test_mistakes_with_replays(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     game.save("GAME")
-    Path("WRONG").write_text("name: Mine\n")
+    Path("WRONG").write_text("name: Mine\n", encoding="utf-8")
     assert cli.main(["replay", *arguments]) == 2
     message = capsys.readouterr().err
     assert message.startswith("arkanoid: error: ")
