@@ -1,21 +1,23 @@
-"""Formulas as MathML, which browsers draw by themselves: no network, no script, no fonts."""
+"""Formulas as MathML, which browsers draw by themselves: no network, no script."""
 
 from docutils import nodes
-from latex2mathml.converter import convert
+from math_core import LatexToMathML
 from sphinx.application import Sphinx
 from sphinx.util.typing import ExtensionMetadata
 from sphinx.writers.html5 import HTML5Translator
 
+CONVERTER = LatexToMathML()  # what it does not know ends the build with its message
+
 
 def inline(writer: HTML5Translator, node: nodes.math) -> None:
     """Write a formula within a line."""
-    writer.body.append(convert(node.astext()))
+    writer.body.append(CONVERTER.convert_with_local_state(node.astext(), displaystyle=False))
     raise nodes.SkipNode
 
 
 def block(writer: HTML5Translator, node: nodes.math_block) -> None:
     """Write a formula that stands alone; a narrow screen scrolls it."""
-    formula = convert(node.astext(), display="block")
+    formula = CONVERTER.convert_with_local_state(node.astext(), displaystyle=True)
     writer.body.append(f'<div class="formula">{formula}</div>\n')
     raise nodes.SkipNode
 
