@@ -18,7 +18,7 @@ INSTALL = $(BIN)/python -c 'import pip' 2>/dev/null || $(BIN)/python -m ensurepi
 REQUIREMENTS = pyproject.toml constraints.txt version.py
 
 .DEFAULT_GOAL = help
-.PHONY: help train test lint types format docs check distcheck bench clean
+.PHONY: help train test lint types format docs check distcheck bench compat clean
 
 help:  ## Show the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -58,6 +58,9 @@ check: lint types docs test  ## All of lint, types, docs and test
 
 bench: $(VENV)/bench  ## Run the benchmarks
 	for benchmark in tests/benchmarks/*.py; do $(BIN)/python $$benchmark || exit; done
+
+compat: $(VENV)/dev  ## Try the environment with every trainer, each installed apart (PEER=torchrl)
+	$(BIN)/python tests/compat/run.py $(PEER)
 
 clean:  ## Remove what was built and installed (not runs/)
 	rm -rf $(VENV) build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache

@@ -16,6 +16,8 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
 EXAMPLES = sorted((DOCS / "examples").glob("*.py"))
+# These need packages that the tests have not: `make compat` runs them (tests/compat).
+PEERS = sorted((DOCS / "examples" / "peers").glob("*.*"))
 FIGURES = sorted((DOCS / "figures").glob("*.svg"))
 LARGEST_FIGURE = 200_000  # bytes
 MEASURE = 0.05  # points: what is drawn less than that apart looks the same
@@ -110,7 +112,9 @@ def test_every_page_example_and_figure_is_linked() -> None:
         for page in [*PAGES, ROOT / "README.md"]
         for path, _ in links(page)
     }
-    assert [relative(file) for file in [*PAGES, *EXAMPLES, *FIGURES] if file not in linked] == []
+    assert [
+        relative(file) for file in [*PAGES, *EXAMPLES, *PEERS, *FIGURES] if file not in linked
+    ] == []
 
 
 def drawn(figure: Path) -> dict[str, np.ndarray]:

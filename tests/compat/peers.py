@@ -1,0 +1,42 @@
+"""The peers that the environment is tried with, as `peers.toml` has them."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+
+
+@dataclass(frozen=True)
+class Peer:
+    """Who is tried, and how; `peers.toml` says what each field is."""
+
+    name: str
+    title: str
+    requirements: tuple[str, ...]
+    python: tuple[str, str]
+    tried: str
+    commands: tuple[str, ...]
+
+    def constraints(self) -> list[str]:
+        """Return the pins of constraints.txt, without those of what the peer pins itself."""
+        own = {package(pin) for pin in self.requirements}
+        lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+        pins = [line for line in lines if line and not line.startswith("#")]
+        return [pin for pin in pins if package(pin) not in own]
+
+
+def package(pin: str) -> str:
+    """Return the name of what is pinned, as package indices spell it."""
+    return pin.partition("==")[0].lower().replace("_", "-")
+
+
+def read_peers() -> dict[str, Peer]:
+    """Return the peers by their names."""
+    tables = tomllib.loads((HERE / "peers.toml").read_text(encoding="utf-8"))["peers"]
+    lists = [
+        {key: tuple(value) if isinstance(value, list) else value for key, value in table.items()}
+        for table in tables
+    ]
+    return {table["name"]: Peer(**table) for table in lists}
