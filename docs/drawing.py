@@ -61,8 +61,16 @@ def save(drawn: Figure, path: Path) -> None:
     """Write a figure as SVG: no date, nothing that changes from run to run, few digits."""
     text = io.StringIO()
     drawn.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    short = re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", text.getvalue())
-    path.write_text(short, encoding="utf-8")
+    path.write_text(shortened(text.getvalue()), encoding="utf-8")
+
+
+def shortened(text: str) -> str:
+    """Return an SVG's text with two digits a number. Factors keep theirs: letters would grow."""
+    return re.sub(
+        r"scale\([^)]*\)|\d+\.\d{3,}",
+        lambda found: found[0] if found[0].startswith("s") else f"{float(found[0]):.2f}",
+        text,
+    )
 
 
 def panel(
