@@ -53,6 +53,7 @@ distcheck: $(VENV)/dev  ## Build wheel and sdist, and run the tests against each
 
 docs: $(VENV)/docs  ## Make the documentation's site, build/docs/index.html
 	$(BIN)/sphinx-build -W --keep-going -q -E -c docs/site -d build/doctrees docs build/docs
+	$(BIN)/python docs/site/check_links.py build/docs
 
 check: lint types docs test  ## All of lint, types, docs and test
 
