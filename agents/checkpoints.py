@@ -5,6 +5,7 @@ The weights after kill and resume are those of the run that was not killed, bit 
 
 import copy
 import random
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -103,16 +104,23 @@ class Checkpoints(BaseCallback):
         venv: the environment that is trained on.
         every: decisions between two writings.
         extra: what the other callbacks remember; it is kept in the state.
+        written: told after each writing how many decisions the state has seen.
     """
 
     def __init__(
-        self, path: Path, venv: GymnasiumVecEnv, every: int, extra: dict[str, Any]
+        self,
+        path: Path,
+        venv: GymnasiumVecEnv,
+        every: int,
+        extra: dict[str, Any],
+        written: Callable[[int], None],
     ) -> None:
         super().__init__()
         self._path = path
         self._venv = venv
         self._every = every
         self._extra = extra
+        self._tell_written = written
         self._state: dict[str, Any] | None = None
         # The first state is written at once: a run that is killed early can be resumed, too.
         self._written = -every
@@ -133,7 +141,7 @@ class Checkpoints(BaseCallback):
         if complete:
             self._capture()
         self._write()
-        return int(self._written)
+        return self._written
 
     def _capture(self) -> None:
         model: Any = self.model
@@ -142,4 +150,5 @@ class Checkpoints(BaseCallback):
     def _write(self) -> None:
         assert self._state is not None
         write_checkpoint(self._state, self._path)
-        self._written = self._state["model"]["num_timesteps"]
+        self._written = int(self._state["model"]["num_timesteps"])
+        self._tell_written(self._written)

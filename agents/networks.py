@@ -64,7 +64,7 @@ class LatticeExtractor(BaseFeaturesExtractor):
 
 
 class PlanesExtractor(BaseFeaturesExtractor):
-    """Convolutions over the planes of a `grid` observation, [planes, rows, columns]."""
+    """Convolutions over the planes of a `grid` or the channels of an `rgb` observation."""
 
     def __init__(
         self,

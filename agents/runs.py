@@ -68,14 +68,19 @@ class RunFolder:
         write_whole(self.notes, text.encode())
 
     def note_session(self, started: float, first: int, last: int) -> None:
-        """Note that it was trained from a decision to another since ``started`` (`time.time`)."""
+        """Note that it was trained from a decision to another since ``started`` (`time.time`).
+
+        It is said again with each checkpoint: of a session that is killed that much is known.
+        """
+        begun = datetime.fromtimestamp(started).isoformat(timespec="milliseconds")
+        earlier = [one for one in self.about().get("sessions", []) if one["started"] != begun]
         session = {
-            "started": datetime.fromtimestamp(started).isoformat(timespec="seconds"),
+            "started": begun,
             "seconds": round(time.time() - started, 1),
             "from": first,
             "to": last,
         }
-        self.note(sessions=[*self.about().get("sessions", []), session])
+        self.note(sessions=[*earlier, session])
 
     @property
     def config(self) -> Path:

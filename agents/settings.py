@@ -65,7 +65,8 @@ class Network(Settings):
     features: str = setting(
         "auto",
         "flat: all numbers side by side; lattice: of `vector`, the bricks through convolutions; "
-        "planes: `grid` through convolutions; nature: `rgb` through those of Mnih et al. (2015); "
+        "planes: `grid` or `rgb` through convolutions; nature: `rgb` through those of Mnih et al. "
+        "(2015), large and slow; "
         "auto: what suits the observation",
         choices=FEATURES,
     )
@@ -198,12 +199,12 @@ class Experiment(Settings):
     def _check_features(self) -> None:
         """Refuse features that the observation has not got the form for."""
         observation = self.env.get("observation", "vector")
-        needed = {"lattice": "vector", "planes": "grid", "nature": "rgb"}
-        wanted = needed.get(self.network.features)
-        if wanted is not None and observation != wanted:
+        suited = {"lattice": ("vector",), "planes": ("grid", "rgb"), "nature": ("rgb",)}
+        wanted = suited.get(self.network.features)
+        if wanted is not None and observation not in wanted:
             raise SettingsError(
                 f"'network.features' = {self.network.features!r} is for 'env.observation' = "
-                f"{wanted!r}, not {observation!r}; 'auto' takes what suits"
+                f"{' or '.join(map(repr, wanted))}, not {observation!r}; 'auto' takes what suits"
             )
         if self.network.features in ("auto", "lattice", "planes") and not self.network.channels:
             raise SettingsError("'network.channels' must name at least one convolution's channels")

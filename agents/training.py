@@ -69,16 +69,22 @@ def _train(
     model = make_model(experiment, venv)
     stop = StopRequest()
     validation = _validation(experiment, folder, memory, stop, on_measure)
-    checkpoints = Checkpoints(folder.checkpoint, venv, experiment.training.checkpoint_every, memory)
-    # In this order: a checkpoint holds what the others remember after their work.
-    callbacks: list[BaseCallback] = [GameStatistics(), Stages(experiment, venv, memory)]
-    callbacks += [validation] if validation is not None else []
-    callbacks += [checkpoints, ProgressBar(), stop]
     if state is not None:
         restore(state, model, venv)
     else:
         venv.set_options(stage_options(experiment.curriculum, 0, venv.num_envs))
     first, started = model.num_timesteps, time.time()
+    checkpoints = Checkpoints(
+        folder.checkpoint,
+        venv,
+        experiment.training.checkpoint_every,
+        memory,
+        lambda last: folder.note_session(started, first, last),
+    )
+    # In this order: a checkpoint holds what the others remember after their work.
+    callbacks: list[BaseCallback] = [GameStatistics(), Stages(experiment, venv, memory)]
+    callbacks += [validation] if validation is not None else []
+    callbacks += [checkpoints, ProgressBar(), stop]
     model.set_logger(_logger(folder, first))
     try:
         with _on_interrupt(lambda: stop.request(INTERRUPTED)):
@@ -97,7 +103,6 @@ def _train(
             validation.close()
     outcome = stop.reason or FINISHED
     save_model(model, folder.model)
-    folder.note_session(started, first, last)
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
     folder.note(outcome=outcome, timesteps=last, weights=hashed)
     return outcome

@@ -91,12 +91,19 @@ def test_a_run_that_is_killed_and_resumed_is_the_run_that_was_not(
     killed = stop_at(start(words(tmp_path)), tmp_path, 5120, signal.SIGKILL)
     assert killed.about()["outcome"] == "unfinished"
     assert "weights" not in killed.about()
+    # Once nothing was known of a session that was killed, and reports left its time out.
+    (session,) = killed.about()["sessions"]
+    assert session["from"] == 0
+    assert session["to"] >= 4096
+    assert session["seconds"] > 0
     resumed = start(["train", "--resume", str(killed.path)])
     _, err = resumed.communicate(timeout=120)
     assert resumed.returncode == 0, err
     assert killed.about()["outcome"] == "finished"
     assert killed.about()["weights"] == whole.about()["weights"]
-    assert killed.about()["sessions"][-1]["from"] >= 4096
+    first, second = killed.about()["sessions"]
+    assert (first["from"], first["to"]) == (0, second["from"])
+    assert second["to"] == 12_288
     # So is all that was measured on the way: curves and the best model.
     assert curve(killed) == curve(whole)
     expected = json.loads(whole.evaluation.read_text())["suites"]

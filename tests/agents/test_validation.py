@@ -153,6 +153,7 @@ def test_a_lattice_of_another_size_is_refused() -> None:
         [("env.observation", "grid")],
         [("env.observation", "rgb"), ("env.grey", "true"), ("env.stack", "2")],
         [("env.observation", "rgb")],
+        [("env.observation", "rgb"), ("env.size", "48"), ("network.features", "planes")],
         [("env.actions", "box")],
     ],
     ids=str,
