@@ -1,0 +1,35 @@
+"""With the changes of `docs/extending.md`: a capsule that makes the ball faster."""
+
+import math
+
+import numpy as np
+from arkanoid.envs import ArkanoidEnv
+from arkanoid.envs.capsules import capsule_by_weight
+from arkanoid.envs.grid import STATUS
+from arkanoid.envs.palette import CAPSULE, LUMA, PALETTE
+from arkanoid.envs.rules import CAPSULES, FAST, PADDLE_TOP
+
+NOOP, FIRE = 0, 3
+
+env = ArkanoidEnv(frame_skip=1)
+env.reset(seed=0)
+env.step(FIRE)
+world = env._batch.worlds[0]
+slow = math.hypot(world.ball_vx[0], world.ball_vy[0])
+world.capsule, world.capsule_x, world.capsule_y = FAST, world.paddle_x, PADDLE_TOP + 1.0
+observation, *_ = env.step(NOOP)
+assert observation[env.layout["capsule"]].tolist() == [0, 0, 0, 0, 0, 0, 0, 1]
+while world.capsule == FAST:
+    env.step(NOOP)
+assert (world.capsules_caught, world.speed_stage) == (1, 2)
+# A stage is a quarter of the speed at the first.
+assert abs(math.hypot(world.ball_vx[0], world.ball_vy[0]) / slow - 1.5) < 1e-12
+
+assert "capsule_fast" in STATUS
+assert sorted(STATUS.values()) == list(range(len(STATUS)))
+colours = PALETTE[CAPSULE + 1 : CAPSULE + 1 + CAPSULES]
+assert np.diff(np.sort(colours @ LUMA)).min() >= 20
+
+drawn = [capsule_by_weight((place + 0.5) / 65536) for place in range(65536)]
+assert abs(drawn.count(FAST) / 65536 - 250 / 256 / 16) < 1e-4
+assert sorted(set(drawn)) == list(range(1, CAPSULES + 1))
