@@ -84,6 +84,7 @@ def improve(agent: Agent, adam: torch.optim.Optimizer, batch: list[Tensor]) -> N
 
 def main() -> None:
     """Train for a few seconds; more UPDATES make a player of it."""
+    torch.set_num_threads(1)  # small networks: more would mostly wait for each other
     torch.manual_seed(0)
     worlds = gym.make_vec(
         "arkanoid:ArkanoidLite-v0",

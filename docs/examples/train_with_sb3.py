@@ -6,6 +6,7 @@ episode: `autoreset_mode="SameStep"`.
 """
 
 import gymnasium as gym
+import torch
 from arkanoid.agents.adapter import GymnasiumVecEnv
 from stable_baselines3 import PPO
 from stable_baselines3.common.env_util import make_vec_env
@@ -26,6 +27,7 @@ def native(count: int) -> VecEnv:
 
 def main() -> None:
     """Train a little in both ways, and from pictures, too."""
+    torch.set_num_threads(1)  # small networks: more would mostly wait for each other
     singles = make_vec_env(GAME, n_envs=4, seed=0, env_kwargs=EASY)
     PPO("MlpPolicy", singles, n_steps=128, n_epochs=2, seed=0).learn(1024)
     print("make_vec_env: trained")

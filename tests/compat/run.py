@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,30 +75,42 @@ def supports_this_python(peer: Peer) -> bool:
 def try_peer(peer: Peer, wheel: Path) -> dict[str, Any]:
     """Run a peer's commands until one fails, and return what came of it."""
     print(f"\n== {peer.name}: {peer.tried}", flush=True)
-    python = make_venv(peer, wheel)
+    result = {
+        "passed": False,
+        "seconds": 0,
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "versions": {},
+        "printed": [],
+    }
+    try:
+        python = make_venv(peer, wheel)
+    except RuntimeError as error:
+        # The others may be installed nonetheless.
+        print(f"FAILS: {error}", flush=True)
+        return result | {"printed": str(error).splitlines()}
     names = dict.fromkeys([*map(package, peer.requirements), *ALWAYS])
-    versions = json.loads(call(python, "-c", VERSIONS, *names))
+    result["versions"] = json.loads(call(python, "-c", VERSIONS, *names))
     start = time.perf_counter()
+    result["passed"], result["printed"] = run_all(peer.commands, python)
+    result["seconds"] = round(time.perf_counter() - start)
+    print(f"{'works' if result['passed'] else 'FAILS'}, {result['seconds']} s", flush=True)
+    return result
+
+
+def run_all(commands: Sequence[str], python: Path) -> tuple[bool, list[str]]:
+    """Run commands until one fails; return whether all work, and what was printed."""
     printed: list[str] = []
     passed = True
     with tempfile.TemporaryDirectory() as folder:
-        for command in peer.commands:
+        for command in commands:
             print("$", shown(command), flush=True)
             passed, lines = run(command, python, Path(folder))
             print(*lines, sep="\n", flush=True)
             printed += [f"$ {shown(command)}", *lines]
             if not passed:
                 break
-    seconds = round(time.perf_counter() - start)
-    print(f"{'works' if passed else 'FAILS'}, {seconds} s", flush=True)
-    return {
-        "passed": passed,
-        "seconds": seconds,
-        "python": platform.python_version(),
-        "system": f"{platform.system()} {platform.machine()}",
-        "versions": versions,
-        "printed": printed,
-    }
+    return passed, printed
 
 
 def run(command: str, python: Path, folder: Path) -> tuple[bool, list[str]]:
@@ -127,7 +140,7 @@ def surroundings() -> dict[str, str]:
     """Return the variables that commands see."""
     # Networks are small: more threads would mostly wait for each other.
     ours = {"SDL_VIDEODRIVER": "dummy", "MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1"}
-    ours["ARKANOID_CACHE_DIR"] = str(BUILD / "kernels")
+    ours |= {"ARKANOID_CACHE_DIR": str(BUILD / "kernels"), "RL_LOGGING_LEVEL": "WARNING"}
     return {key: value for key, value in os.environ.items() if key != "PYTHONPATH"} | ours
 
 
