@@ -18,7 +18,7 @@ PROGRAMS = sorted((ROOT / "tests" / "extending").glob("*.py"))
 def changes(page: str) -> list[tuple[str, str, str]]:
     """Return (file, the lines as they are, the lines as they are to be) of each block."""
     found = []
-    for file, block in re.findall(r"^```diff\n(?:---|\+\+\+) (\S+)\n(.*?)^```$", page, re.M | re.S):
+    for file, block in re.findall(r"^```diff\ndiff (\S+)\n(.*?)^```$", page, re.M | re.S):
         lines = block.splitlines(keepends=True)
         old = "".join(line[1:] for line in lines if line[0] != "+")
         new = "".join(line[1:] for line in lines if line[0] != "-")
@@ -50,7 +50,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_block_is_what_was_and_what_is_to_be(tmp_path: Path) -> None:
-    page = "Text\n```diff\n--- a.py\n one\n-two\n+three\n+four\n five\n```\n"
+    page = "Text\n```diff\ndiff a.py\n one\n-two\n+three\n+four\n five\n```\n"
     ((name, old, new),) = changes(page)
     assert (name, old, new) == ("a.py", "one\ntwo\nfive\n", "one\nthree\nfour\nfive\n")
     file = tmp_path / name

@@ -1,4 +1,7 @@
-"""What the README says is true: its code runs, its commands and links exist."""
+"""What the README says is true: its code runs, its commands and links exist.
+
+So do the commands of the pages that one reads first.
+"""
 
 import re
 import shlex
@@ -13,13 +16,21 @@ ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
 PYTHON = [code for language, code in BLOCKS if language == "python"]
-COMMANDS = [
-    line.partition("  #")[0].strip()
-    for language, text in BLOCKS
-    if language == "sh"
-    for line in text.splitlines()
-    if line.strip() and not line.startswith("#")
-]
+
+
+def commands(page: str) -> list[str]:
+    """Return the commands in a page's blocks, without what is said beside them."""
+    return [
+        line.partition("  #")[0].strip()
+        for text in re.findall(r"^```sh\n(.*?)^```$", page, flags=re.MULTILINE | re.DOTALL)
+        for line in text.splitlines()
+        if line.strip() and not line.startswith("#")
+    ]
+
+
+COMMANDS = commands(README)
+FIRST_PAGES = [ROOT / "docs" / name for name in ("install.md", "tour.md")]
+OTHERS = [line for page in FIRST_PAGES for line in commands(page.read_text(encoding="utf-8"))]
 TARGETS = re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
 EXTRAS = set(
     tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
@@ -46,7 +57,7 @@ def test_example_runs(code: str, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", dict.fromkeys(COMMANDS + OTHERS))
 def test_command_exists(command: str) -> None:
     """Each command is of a known kind, and what it names is there."""
     words = [word for word in shlex.split(command) if not re.fullmatch(r"[A-Z_]+=\S*", word)]
