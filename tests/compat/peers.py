@@ -6,6 +6,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+RUNS_ON = ("gymnasium", "llvmlite", "numba", "numpy", "platformdirs", "torch")
 
 
 @dataclass(frozen=True)
@@ -20,11 +21,13 @@ class Peer:
     commands: tuple[str, ...]
 
     def constraints(self) -> list[str]:
-        """Return the pins of constraints.txt, without those of what the peer pins itself."""
-        own = {package(pin) for pin in self.requirements}
+        """Return the pins of constraints.txt of what the environment runs on and the peer leaves.
+
+        Not of everything: a trainer may need others of what it brings along.
+        """
+        wanted = {*RUNS_ON} - {package(pin) for pin in self.requirements}
         lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
-        pins = [line for line in lines if line and not line.startswith("#")]
-        return [pin for pin in pins if package(pin) not in own]
+        return [line for line in lines if package(line) in wanted]
 
 
 def package(pin: str) -> str:
