@@ -3,6 +3,7 @@
 
 VENV ?= .venv
 BIN = $(VENV)/bin
+RAY_VENV ?= build/ray
 # (Refused in a variable's value: there another make reads over it, and on to its own message.)
 COLON = :
 CHECKED := $(if $(filter-out 1,$(words $(VENV))$(findstring $(COLON),$(VENV))),\
@@ -18,7 +19,7 @@ INSTALL = $(BIN)/python -c 'import pip' 2>/dev/null || $(BIN)/python -m ensurepi
 REQUIREMENTS = pyproject.toml constraints.txt version.py
 
 .DEFAULT_GOAL = help
-.PHONY: help train test lint types format docs check distcheck bench compat clean
+.PHONY: help train test lint types format docs check distcheck bench compat ray clean
 
 help:  ## Show the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -63,6 +64,11 @@ bench: $(VENV)/bench  ## Run the benchmarks
 compat: $(VENV)/dev  ## Try the environment with every trainer, each installed apart (PEER=torchrl)
 	$(BIN)/python tests/compat/run.py $(PEER)
 
+# RLlib wants a Gymnasium of its own, and so an environment of its own.
+ray:  ## Train with RLlib on several processes and two nodes, and measure it (RAY="scaling")
+	$(MAKE) VENV=$(RAY_VENV) $(RAY_VENV)/ray
+	$(RAY_VENV)/bin/python tests/cluster/run.py $(RAY)
+
 clean:  ## Remove what was built and installed (not runs/)
 	rm -rf $(VENV) build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -81,6 +87,10 @@ $(VENV)/docs: $(REQUIREMENTS) | $(BIN)/python
 
 $(VENV)/bench: $(REQUIREMENTS) | $(BIN)/python
 	$(INSTALL) '.[bench]'
+	touch $@
+
+$(VENV)/ray: pyproject.toml constraints-ray.txt version.py | $(BIN)/python
+	$(INSTALL:constraints.txt=constraints-ray.txt) '.[ray,train]'
 	touch $@
 
 # Another make than GNU's takes the sign of an order-only prerequisite for a file, and makes it.

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
 EXAMPLES = sorted((DOCS / "examples").glob("*.py"))
-# These need packages that the tests have not: `make compat` runs them (tests/compat).
+# These need packages that the tests have not: `make compat` and `make ray` run them.
 PEERS = sorted((DOCS / "examples" / "peers").glob("*.*"))
 FIGURES = sorted((DOCS / "figures").glob("*.svg"))
 LARGEST_FIGURE = 200_000  # bytes

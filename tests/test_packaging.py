@@ -12,12 +12,18 @@ import zipfile
 from pathlib import Path, PurePosixPath
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 # Folders of the root that are no packages.
 NOT_PACKAGES = ("tests/", "docs/")
 DATA = ("py.typed", ".toml", ".txt")
+# Each set of versions, and the extras that are installed by it.
+LOCKS = {
+    "constraints.txt": {"train", "play", "bench", "docs", "dev"},
+    "constraints-ray.txt": {"train", "ray"},
+}
 # The agent that comes with the package: its settings, where it comes from, its network.
 PRETRAINED = tuple(f"agents/pretrained/{name}" for name in ("config.toml", "run.json", "model.zip"))
 LONGEST_PATH = 120  # letters, of the 260 that a whole path may have on Windows
@@ -171,15 +177,30 @@ def test_every_system_can_hold_the_files() -> None:
     assert [name for name in names if len(name) > LONGEST_PATH or RESERVED.search(name)] == []
 
 
-def test_every_requirement_has_its_pin() -> None:
-    """What `make` installs is one set of versions, without a hole."""
-    listed = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
-    pinned = {canonical(line.partition("==")[0]) for line in listed if not line.startswith("#")}
+def pins(file: str) -> dict[str, str]:
+    """Return the version that a file of constraints has for each package."""
+    lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
+    pairs = (line.split("==") for line in lines if not line.startswith("#"))
+    return {canonical(name): version for name, version in pairs}
+
+
+@pytest.mark.parametrize(("file", "extras"), LOCKS.items())
+def test_every_requirement_has_its_pin(file: str, extras: set[str]) -> None:
+    """What `make` installs is one set of versions, without a hole, and those that are allowed."""
     project = PROJECT["project"]
-    groups = [project["dependencies"], *project["optional-dependencies"].values()]
-    wanted = [re.split(r"[\[<>=;]", requirement)[0] for group in groups for requirement in group]
-    names = set(map(canonical, wanted))
-    assert names - pinned == {"arkanoid"}
+    groups = [project["dependencies"], *(project["optional-dependencies"][name] for name in extras)]
+    wanted = [Requirement(text) for group in groups for text in group]
+    pinned = pins(file)
+    assert {canonical(one.name) for one in wanted} - pinned.keys() <= {"arkanoid"}
+    for one in wanted:
+        assert one.name == "arkanoid" or pinned[canonical(one.name)] in one.specifier
+
+
+def test_constraints_differ_only_in_gymnasium() -> None:
+    """RLlib wants exactly one version of it; all else is the same with and without RLlib."""
+    everywhere, ray = pins("constraints.txt"), pins("constraints-ray.txt")
+    both = everywhere.keys() & ray.keys()
+    assert {name for name in both if everywhere[name] != ray[name]} <= {"gymnasium"}
 
 
 def canonical(name: str) -> str:
@@ -202,14 +223,15 @@ def test_every_subpackage_is_listed() -> None:
 
 def test_extras_for_developing_hold_those_for_users() -> None:
     extras = PROJECT["project"]["optional-dependencies"]
-    assert set(extras) == {"train", "play", "bench", "docs", "dev"}
+    assert set(extras) == {"train", "play", "ray", "bench", "docs", "dev"}
     assert "arkanoid[train,play]" in extras["dev"]
 
 
-def test_constraints_are_portable() -> None:
+@pytest.mark.parametrize("file", LOCKS)
+def test_constraints_are_portable(file: str) -> None:
     """A pin such as ``torch==2.13.0+cpu`` names a build that the package index does not have."""
-    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
-    pins = [line for line in lines if not line.startswith("#")]
-    assert [pin for pin in pins if not re.fullmatch(r"[\w-]+==[\w.]+", pin)] == []
-    assert "torch==2.13.0" in pins
-    assert "nvidia" not in " ".join(pins)
+    lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
+    listed = [line for line in lines if not line.startswith("#")]
+    assert [pin for pin in listed if not re.fullmatch(r"[\w-]+==[\w.]+", pin)] == []
+    assert "torch==2.13.0" in listed
+    assert "nvidia" not in " ".join(listed)
