@@ -66,7 +66,7 @@ def record() -> Iterator[str]:
     yield "```text"
     for name, result in read_results().items():
         found = ", ".join(f"{key} {value}" for key, value in result["versions"].items())
-        yield f"{name}: Python {result['python']} on {result['system']}, {result['seconds']} s"
+        yield f"{name}: Python {result['python']} on {result['system']}"
         yield f"  {found}"
         yield from (f"  {line}" for line in result["printed"])
         yield ""

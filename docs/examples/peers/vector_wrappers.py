@@ -28,7 +28,7 @@ def play(env: gym.vector.VectorEnv) -> np.ndarray:
     env.action_space.seed(0)
     for _ in range(STEPS):
         observations, *_ = env.step(env.action_space.sample())
-        assert env.observation_space.contains(observations)
+        assert observations.shape == env.observation_space.shape
     env.close()
     return observations
 
@@ -54,10 +54,13 @@ def main() -> None:
     print("pictures:", play(vector.DtypeObservation(small, np.float32)).shape)
 
     filmed = vector.RecordVideo(
-        make(render_mode="rgb_array"), "films", step_trigger=lambda step: step == 1, video_length=60
+        make(render_mode="rgb_array"),
+        "world_films",
+        step_trigger=lambda step: step == 1,
+        video_length=60,
     )
     play(filmed)
-    print("films:", *(film.name for film in Path("films").iterdir()))
+    print("films:", *(film.name for film in Path("world_films").iterdir()))
 
     listed = vector.DictInfoToList(make())
     _, infos = listed.reset(seed=0)
