@@ -203,7 +203,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
-        # Gymnasium before 1.3 closes what is deleted, an environment whose keywords were refused, too.
+        # Gymnasium before 1.3 closes whatever is deleted: also what refused its keywords.
         if hasattr(self, "_batch"):
             self._batch.close()
 
