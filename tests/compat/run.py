@@ -132,6 +132,7 @@ def run(command: str, python: Path, folder: Path) -> tuple[bool, list[str]]:
         return False, [f"no end after {PATIENCE} s"]
     passed = done.returncode == 0
     text = done.stdout if passed else done.stdout + done.stderr
+    text = text.replace(f"{ROOT}{os.sep}", "")  # it is kept in the documentation
     lines = [line.rstrip() for line in text.splitlines() if line.strip()]
     return passed, lines[-KEPT if passed else -4 * KEPT :]
 

@@ -4,8 +4,6 @@
 the step after the end of an episode begins the next one, and takes no action.
 """
 
-from pathlib import Path
-
 import gymnasium as gym
 import numpy as np
 from arkanoid.envs import ArkanoidVectorEnv
@@ -52,15 +50,6 @@ def main() -> None:
     )
     small = vector.ResizeObservation(vector.GrayscaleObservation(last_axis), (42, 42))
     print("pictures:", play(vector.DtypeObservation(small, np.float32)).shape)
-
-    filmed = vector.RecordVideo(
-        make(render_mode="rgb_array"),
-        "world_films",
-        step_trigger=lambda step: step == 1,
-        video_length=60,
-    )
-    play(filmed)
-    print("films:", *(film.name for film in Path("world_films").iterdir()))
 
     listed = vector.DictInfoToList(make())
     _, infos = listed.reset(seed=0)
