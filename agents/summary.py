@@ -63,9 +63,8 @@ def _card(experiment: Experiment, models: Sequence[ModelFile]) -> list[Part]:
             f"Proximal policy optimisation (stable-baselines3) on {experiment.env_id}, which it "
             f"sees as {observation!r}; trained on the levels {levels!r}, "
             f"{experiment.training.timesteps} decisions with each of {len(models)} seeds. It is "
-            "made to play this game and to be compared with; the tables say how well it does on "
-            "levels that it was not trained on. Its weights are a network for this game's "
-            "observation only."
+            "made to play this game and to be compared with; the tables say how well it does, "
+            "level by level. Its weights are a network for this game's observation only."
         ),
         Table(tuple(rows)),
         Heading("Where it comes from", 3),
