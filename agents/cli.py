@@ -14,24 +14,24 @@ from types import ModuleType
 from gymnasium.error import DependencyNotInstalled
 
 from .. import __version__
-from . import (
+from .commands import (
     evaluate,
+    levels,
     play,
     record,
+    replay,
     report,
     reproduce,
-    show_levels,
-    show_replay,
     train,
     tune,
     watch,
 )
-from .schema import SettingsError
+from .experiment.schema import SettingsError
 
 COMMANDS: dict[str, ModuleType] = {
     "play": play,
-    "replay": show_replay,
-    "levels": show_levels,
+    "replay": replay,
+    "levels": levels,
     "train": train,
     "reproduce": reproduce,
     "tune": tune,

@@ -12,9 +12,9 @@ from arkanoid.physics import (
     Rectangle,
     contact,
 )
-from arkanoid.physics.convex_convex import separation_along
-from arkanoid.physics.dispatch import REGISTERED
-from arkanoid.physics.shape_table import shape_table
+from arkanoid.physics.pairs.convex_convex import separation_along
+from arkanoid.physics.pairs.table import REGISTERED
+from arkanoid.physics.shapes.table import shape_table
 from drawing import (
     ACCENT,
     FIRST,

@@ -16,8 +16,10 @@ from typing import Any
 
 import arkanoid
 import gymnasium as gym
-from arkanoid.envs import curriculum, grid, observation, rules, state
+from arkanoid.envs import rules, state
 from arkanoid.envs.config import Config
+from arkanoid.envs.levels import starts
+from arkanoid.envs.observe import planes, vector
 
 PAGE = Path(__file__).with_name("environment.md")
 OBSERVATIONS: tuple[dict[str, Any], ...] = (
@@ -166,15 +168,15 @@ def page() -> str:
         "",
         "### `vector`",
         "",
-        paragraphs(observation),
+        paragraphs(vector),
         "",
-        *observation_table(observation, layout_of()),
+        *observation_table(vector, layout_of()),
         "",
         "### `grid`",
         "",
-        paragraphs(grid),
+        paragraphs(planes),
         "",
-        *observation_table(grid, layout_of(observation="grid")),
+        *observation_table(planes, layout_of(observation="grid")),
         "",
         "### `rgb`",
         "",
@@ -188,7 +190,7 @@ def page() -> str:
         "",
         STARTING_STATE,
         "",
-        paragraphs(curriculum),
+        paragraphs(starts),
         "",
         "## Episode End",
         "",

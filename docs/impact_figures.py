@@ -15,9 +15,9 @@ from arkanoid.physics import (
     bounce,
     time_of_impact,
 )
-from arkanoid.physics.convex_convex import separation_along
-from arkanoid.physics.shape_table import shape_table
-from arkanoid.physics.touching_point import touching_point
+from arkanoid.physics.pairs.convex_convex import separation_along
+from arkanoid.physics.pairs.touching_point import touching_point
+from arkanoid.physics.shapes.table import shape_table
 from drawing import (
     ACCENT,
     FAINT,

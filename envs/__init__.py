@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .arkanoid_env import ArkanoidEnv
-    from .playback import ReplayDivergedError, play_replay, replay_frames
-    from .replays import Replay
+    from .batch.playback import ReplayDivergedError, play_replay, replay_frames
+    from .batch.replays import Replay
     from .vector_env import ArkanoidVectorEnv
 
 __all__ = [
@@ -21,10 +21,10 @@ __all__ = [
 _HOMES = {
     "ArkanoidEnv": "arkanoid_env",
     "ArkanoidVectorEnv": "vector_env",
-    "Replay": "replays",
-    "ReplayDivergedError": "playback",
-    "play_replay": "playback",
-    "replay_frames": "playback",
+    "Replay": "batch.replays",
+    "ReplayDivergedError": "batch.playback",
+    "play_replay": "batch.playback",
+    "replay_frames": "batch.playback",
 }
 
 

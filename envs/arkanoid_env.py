@@ -7,10 +7,11 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from .batch import COMMANDS, Batch
+from .actions import COMMANDS
+from .batch.batch import Batch
+from .batch.snapshots import restore_snapshot, take_snapshot
 from .checks import check_integer
 from .config import Config
-from .generator import MAX_SEED
 from .interface import (
     METADATA,
     RENDER_MODES,
@@ -19,13 +20,13 @@ from .interface import (
     check_render_mode,
     instance_metadata,
 )
+from .levels.generator import MAX_SEED
 from .rules import TICKS_PER_SECOND
-from .snapshots import restore_snapshot, take_snapshot
 from .state import INFO_FIELDS, Outcome
 
 if TYPE_CHECKING:
-    from .recorder import Recorder
-    from .window import Window
+    from .batch.recorder import Recorder
+    from .play.window import Window
 
 Observation = NDArray[Any]
 
@@ -112,7 +113,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         """Return a frame, uint8 [height, width, 3], in render mode ``"rgb_array"``."""
         if self.render_mode == "rgb_array":
             # Imported on demand: playing without pictures needs none of the drawing kernels.
-            from .render import draw_world
+            from .draw.picture import draw_world
 
             return draw_world(self._batch.worlds, self._batch.rules, 0)
         if self.render_mode is None:
@@ -171,7 +172,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     def record(self) -> "Recorder":
         """Begin to record games, for replays: from the next reset on, or the one just made."""
         # Imported on demand: most play is not recorded.
-        from .recorder import Recorder
+        from .batch.recorder import Recorder
 
         return Recorder(self._batch, 0)
 
@@ -181,7 +182,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         Arrows or A and D move, space fires. With ``actions="box"`` play() also needs
         ``noop=numpy.zeros(2, numpy.float32)``, for its own is the number 0.
         """
-        from .controls import keys_to_action
+        from .play.controls import keys_to_action
 
         return keys_to_action(self.config)
 
@@ -207,11 +208,11 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         if self.render_mode != "human":
             return
         # Imported on demand: playing without pictures needs none of this.
-        from .render import draw_world
-        from .show import screen_height
+        from .draw.picture import draw_world
+        from .play.show import screen_height
 
         if self._window is None:
-            from .window import Window
+            from .play.window import Window
 
             self._window = Window("Arkanoid", TICKS_PER_SECOND / self.config.frame_skip)
         if not self._window.closed:

@@ -9,13 +9,13 @@ import numpy as np
 
 from .checks import check_choice, check_integer, check_number
 from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
-from .view import MAX_SIZE
 
 ACTIONS = ("discrete6", "discrete3", "box")
 OBSERVATIONS = ("vector", "grid", "rgb")
 # The keywords that say how a game is seen. All others decide its course.
 _PICTURES = ("size", "grey", "stack")
 _SEEN = ("observation", *_PICTURES)
+MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
 
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .batch import COMMANDS
+from .actions import COMMANDS
 from .config import Config
-from .curriculum import START_OPTIONS
+from .levels.starts import START_OPTIONS
 from .rules import TICKS_PER_SECOND
 
 RENDER_MODES = ("rgb_array", "human")

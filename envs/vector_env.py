@@ -9,16 +9,16 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from .batch import Autoreset, Batch
+from .batch.batch import Autoreset, Batch
+from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .checks import check_integer
 from .config import Config
-from .generator import MAX_SEED
 from .interface import action_space, check_options, check_render_mode, instance_metadata
-from .snapshots import restore_snapshot, spread_snapshot, take_snapshot
+from .levels.generator import MAX_SEED
 from .state import INFO_FIELDS
 
 if TYPE_CHECKING:
-    from .recorder import Recorder
+    from .batch.recorder import Recorder
 
 Observations = NDArray[Any]
 
@@ -135,7 +135,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         if self.render_mode is None:
             return None
         # Imported on demand: playing without pictures needs none of the drawing kernels.
-        from .render import draw_world
+        from .draw.picture import draw_world
 
         batch = self._batch
         return tuple(draw_world(batch.worlds, batch.rules, index) for index in range(self.num_envs))
@@ -197,7 +197,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             ValueError: there is no such world.
         """
         # Imported on demand: most play is not recorded.
-        from .recorder import Recorder
+        from .batch.recorder import Recorder
 
         return Recorder(self._batch, world)
 

@@ -7,15 +7,6 @@ worlds.
 """
 
 from .body import Body
-from .colliders import (
-    AxisAlignedHalfPlane,
-    AxisAlignedRectangle,
-    Collider,
-    Convex,
-    HalfPlane,
-    Particle,
-    Rectangle,
-)
 from .errors import HitLimitWarning, InseparableError
 from .operations import (
     Contact,
@@ -29,9 +20,18 @@ from .operations import (
     time_of_impact,
 )
 from .protocols import Collidable, Dynamic, Moving
-from .world import RayHit, World
-from .world_batch import WorldBatch
-from .world_records import BEGIN, END, HIT, Hit
+from .shapes.colliders import (
+    AxisAlignedHalfPlane,
+    AxisAlignedRectangle,
+    Collider,
+    Convex,
+    HalfPlane,
+    Particle,
+    Rectangle,
+)
+from .world.batch import WorldBatch
+from .world.records import BEGIN, END, HIT, Hit
+from .world.world import RayHit, World
 
 __all__ = [
     "BEGIN",

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .colliders import Collider
+from .shapes.colliders import Collider
 from .validation import inverse_mass, not_negative, vector
 
 FloatArray = npt.NDArray[np.float64]

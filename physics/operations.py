@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .body import FloatArray
-from .colliders import Collider
-from .dispatch import contact_between, impact_between, overlap_between
 from .errors import InseparableError
+from .pairs.response import bounce_velocities, shares
+from .pairs.table import contact_between, impact_between, overlap_between
 from .protocols import Collidable, Dynamic, Moving
-from .response import bounce_velocities, shares
-from .shape_table import ShapeTable, shape_table
+from .shapes.colliders import Collider
+from .shapes.table import ShapeTable, shape_table
 from .validation import duration as checked_duration
 from .validation import inverse_mass, not_negative, vector
 

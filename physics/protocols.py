@@ -7,7 +7,7 @@ a list a list; anything else becomes a tuple of floats). It never writes into th
 
 from typing import Any, Protocol, runtime_checkable
 
-from .colliders import Collider
+from .shapes.colliders import Collider
 
 
 @runtime_checkable

@@ -121,7 +121,7 @@ def test_wheel_holds_types_experiments_and_levels(wheel: Path) -> None:
     assert "arkanoid/py.typed" in names
     assert any(re.fullmatch(r"arkanoid/configs/\w+\.toml", name) for name in names)
     assert {f"arkanoid/{name}" for name in PRETRAINED} <= set(names)
-    assert any(re.fullmatch(r"arkanoid/envs/levels/\w+\.txt", name) for name in names)
+    assert any(re.fullmatch(r"arkanoid/envs/levels/named/\w+\.txt", name) for name in names)
 
 
 def test_sdist_builds_the_same_wheel(wheel: Path, sdist: Path, tmp_path: Path) -> None:

@@ -7,9 +7,9 @@ from typing import Any
 import gymnasium as gym
 import imageio.v3 as iio
 import numpy as np
-from arkanoid.envs.generator import plan_level
-from arkanoid.envs.motifs import MOTIFS
-from arkanoid.envs.rounds import CAMPAIGN
+from arkanoid.envs.levels.files import CAMPAIGN
+from arkanoid.envs.levels.generator import plan_level
+from arkanoid.envs.levels.motifs import MOTIFS
 from numpy.typing import NDArray
 
 ROUNDS = "named_rounds.png"

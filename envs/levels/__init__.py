@@ -1,1 +1,1 @@
-"""The named rounds, as text."""
+"""Where the bricks lie: named levels, level files, generated levels, and their order."""

@@ -3,17 +3,17 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.agents.baselines import (
+from arkanoid.agents.experiment.settings import BASELINES, load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.measure.baselines import (
     BallFollower,
     NoOp,
     RandomPolicy,
     encode_actions,
     make_baseline,
 )
-from arkanoid.agents.episodes import play_episodes
-from arkanoid.agents.levels import find_starts
-from arkanoid.agents.settings import BASELINES, load_experiment
-from arkanoid.agents.worlds import make_worlds
+from arkanoid.agents.measure.episodes import play_episodes
+from arkanoid.agents.measure.suites import find_starts
 
 LAYOUT = {"paddle": slice(0, 2), "ball_x": slice(4, 6), "ball_y": slice(6, 8)}
 THREE, SIX = gym.spaces.Discrete(3), gym.spaces.Discrete(6)

@@ -6,8 +6,11 @@ from dataclasses import replace
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.agents.baselines import NoOp, Policy, make_baseline
-from arkanoid.agents.comparison import (
+from arkanoid.agents.experiment.schema import SettingsError
+from arkanoid.agents.experiment.settings import Experiment, load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.measure.baselines import NoOp, Policy, make_baseline
+from arkanoid.agents.measure.comparison import (
     COLUMNS,
     as_json,
     as_tables,
@@ -15,11 +18,8 @@ from arkanoid.agents.comparison import (
     level_interval,
     summarise,
 )
-from arkanoid.agents.episodes import play_episodes
-from arkanoid.agents.levels import Start, find_starts, make_suites
-from arkanoid.agents.schema import SettingsError
-from arkanoid.agents.settings import Experiment, load_experiment
-from arkanoid.agents.worlds import make_worlds
+from arkanoid.agents.measure.episodes import play_episodes
+from arkanoid.agents.measure.suites import Start, find_starts, make_suites
 from scipy import stats
 
 SPACE = gym.spaces.Discrete(3)

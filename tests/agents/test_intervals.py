@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from arkanoid.agents import intervals
-from arkanoid.agents.intervals import (
+from arkanoid.agents.measure import intervals
+from arkanoid.agents.measure.intervals import (
     bootstrap_interval,
     interquartile_mean,
     mean,

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.curves import STEP, CurveWriter, read_curve
-from arkanoid.agents.files import write_whole
-from arkanoid.agents.runs import RunFolder
-from arkanoid.agents.settings import load_experiment
-from arkanoid.agents.training import train
+from arkanoid.agents.experiment.files import write_whole
+from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.settings import load_experiment
+from arkanoid.agents.learn.curves import STEP, CurveWriter, read_curve
+from arkanoid.agents.learn.training import train
 
 # All that has a state is in use: a schedule, a curriculum, validation, generated levels, sticky
 # actions; episodes are short, so that many end, some by being cut.
@@ -49,7 +49,7 @@ def words(output: Path, **changes: str) -> list[str]:
 
 def start(arguments: list[str]) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-m", f"arkanoid.agents.{arguments[0]}", *arguments[1:]],
+        [sys.executable, "-m", "arkanoid", *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

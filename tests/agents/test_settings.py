@@ -5,8 +5,8 @@ from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 
 import pytest
-from arkanoid.agents.schema import SettingsError, leaves, read_settings, to_toml
-from arkanoid.agents.settings import Experiment, Ppo, load_experiment, packaged_configs
+from arkanoid.agents.experiment.schema import SettingsError, leaves, read_settings, to_toml
+from arkanoid.agents.experiment.settings import Experiment, Ppo, load_experiment, packaged_configs
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -11,20 +11,20 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.baselines import make_baseline
-from arkanoid.agents.curves import STEP
-from arkanoid.agents.episodes import play_episodes
-from arkanoid.agents.evaluate import group_by_experiment
-from arkanoid.agents.levels import find_starts
-from arkanoid.agents.page import Code, Heading, Picture, Table, Text, as_html, as_markdown
-from arkanoid.agents.plots import mean_curve
-from arkanoid.agents.provenance import weights_hash
-from arkanoid.agents.recording import can_be_smooth, frame_rate, play_frames
-from arkanoid.agents.runs import ModelFile, RunFolder
-from arkanoid.agents.schema import SettingsError
-from arkanoid.agents.settings import load_experiment
-from arkanoid.agents.training import train
-from arkanoid.agents.worlds import make_worlds
+from arkanoid.agents.commands.evaluate import group_by_experiment
+from arkanoid.agents.experiment.provenance import weights_hash
+from arkanoid.agents.experiment.runs import ModelFile, RunFolder
+from arkanoid.agents.experiment.schema import SettingsError
+from arkanoid.agents.experiment.settings import load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.learn.curves import STEP
+from arkanoid.agents.learn.training import train
+from arkanoid.agents.measure.baselines import make_baseline
+from arkanoid.agents.measure.episodes import play_episodes
+from arkanoid.agents.measure.suites import find_starts
+from arkanoid.agents.show.clips import can_be_smooth, frame_rate, play_frames
+from arkanoid.agents.show.page import Code, Heading, Picture, Table, Text, as_html, as_markdown
+from arkanoid.agents.show.plots import mean_curve
 from imageio_ffmpeg import count_frames_and_secs
 from PIL import Image
 from stable_baselines3 import PPO
@@ -119,7 +119,7 @@ def test_a_clip_that_cannot_be_written_is_a_mistake(
 def test_watch_shows_games_until_the_window_is_closed(
     runs: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from arkanoid.envs import window
+    from arkanoid.envs.play import window
 
     shown: list[np.ndarray] = []
 

@@ -16,15 +16,17 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.agents import cli, learning, training
+from arkanoid.agents import cli
 from arkanoid.agents.adapter import GymnasiumVecEnv
-from arkanoid.agents.comparison import COLUMNS
-from arkanoid.agents.curves import read_curve
-from arkanoid.agents.episodes import adapt
-from arkanoid.agents.runs import RunFolder
-from arkanoid.agents.schema import SettingsError
-from arkanoid.agents.settings import Experiment, load_experiment
-from arkanoid.agents.worlds import make_worlds
+from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.schema import SettingsError
+from arkanoid.agents.experiment.settings import Experiment, load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.learn import model as learning
+from arkanoid.agents.learn import training
+from arkanoid.agents.learn.curves import read_curve
+from arkanoid.agents.measure.comparison import COLUMNS
+from arkanoid.agents.measure.episodes import adapt
 from numpy.typing import NDArray
 from PIL import Image
 from stable_baselines3 import PPO
@@ -35,7 +37,7 @@ TINY += ["--ppo.batch_size", "256", "--evaluation.episodes", "4", "--evaluation.
 
 
 def command(module: str, *arguments: str) -> list[str]:
-    return [sys.executable, "-m", f"arkanoid.agents.{module}", *arguments]
+    return [sys.executable, "-m", "arkanoid", module, *arguments]
 
 
 def weights(model: PPO) -> list[NDArray[np.float32]]:

@@ -7,9 +7,9 @@ from pathlib import Path
 import optuna
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.schema import SettingsError, read_settings
-from arkanoid.agents.settings import Experiment, packaged_configs
-from arkanoid.agents.tuning import best_as_toml, load_space, open_study
+from arkanoid.agents.experiment.schema import SettingsError, read_settings
+from arkanoid.agents.experiment.settings import Experiment, packaged_configs
+from arkanoid.agents.learn.tuning import best_as_toml, load_space, open_study
 
 SPACE = """
 measure = "score"

@@ -7,16 +7,21 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from arkanoid.agents.curves import STEP, read_curve
-from arkanoid.agents.episodes import adapt
-from arkanoid.agents.learning import load_policy, make_model
-from arkanoid.agents.networks import LatticeExtractor, PlanesExtractor
-from arkanoid.agents.provenance import weights_hash
-from arkanoid.agents.runs import RunFolder
-from arkanoid.agents.settings import Curriculum, Experiment, load_experiment, packaged_configs
-from arkanoid.agents.stages import stage_at, stage_options
-from arkanoid.agents.training import train
-from arkanoid.agents.worlds import make_worlds, native
+from arkanoid.agents.experiment.provenance import weights_hash
+from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.settings import (
+    Curriculum,
+    Experiment,
+    load_experiment,
+    packaged_configs,
+)
+from arkanoid.agents.experiment.worlds import make_worlds, native
+from arkanoid.agents.learn.curves import STEP, read_curve
+from arkanoid.agents.learn.model import load_policy, make_model
+from arkanoid.agents.learn.networks import LatticeExtractor, PlanesExtractor
+from arkanoid.agents.learn.stages import stage_at, stage_options
+from arkanoid.agents.learn.training import train
+from arkanoid.agents.measure.episodes import adapt
 from gymnasium import spaces
 from stable_baselines3 import PPO
 

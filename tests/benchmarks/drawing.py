@@ -8,12 +8,12 @@ import time
 from typing import Any
 
 import numpy as np
-from arkanoid.envs.batch import Autoreset, Batch
-from arkanoid.envs.canvas import Drawn
+from arkanoid.envs.batch.batch import Autoreset, Batch
 from arkanoid.envs.config import Config
-from arkanoid.envs.draw_frame import draw_frame
-from arkanoid.envs.scenery import scenery
-from arkanoid.physics.compilation import kernel
+from arkanoid.envs.draw.canvas import Drawn
+from arkanoid.envs.draw.frame import draw_frame
+from arkanoid.envs.draw.scenery import scenery
+from arkanoid.physics.kernels.decorators import kernel
 
 SIZES = [(84, 84, 1), (84, 84, 3), (210, 160, 3), (512, 384, 3)]
 

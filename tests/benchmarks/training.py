@@ -8,10 +8,10 @@ import time
 from typing import Any
 
 import numpy as np
-from arkanoid.agents.episodes import adapt
-from arkanoid.agents.learning import make_model
-from arkanoid.agents.settings import Experiment, load_experiment
-from arkanoid.agents.worlds import make_worlds
+from arkanoid.agents.experiment.settings import Experiment, load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.learn.model import make_model
+from arkanoid.agents.measure.episodes import adapt
 from stable_baselines3.common.vec_env import VecEnv
 
 REPEATS = 3

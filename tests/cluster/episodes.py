@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import gymnasium as gym
 import numpy as np
 import torch
-from arkanoid.agents.baselines import Policy
-from arkanoid.agents.episodes import play_episodes
+from arkanoid.agents.measure.baselines import Policy
+from arkanoid.agents.measure.episodes import play_episodes
 from ray.rllib.core.rl_module.rl_module import RLModule
 from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner
 from rllib_ppo import make_config, make_worlds

@@ -3,9 +3,9 @@
 import time
 
 import gymnasium as gym
-from arkanoid.agents.baselines import RandomPolicy
-from arkanoid.agents.episodes import play_episodes
-from arkanoid.agents.intervals import bootstrap_interval
+from arkanoid.agents.measure.baselines import RandomPolicy
+from arkanoid.agents.measure.episodes import play_episodes
+from arkanoid.agents.measure.intervals import bootstrap_interval
 from episodes import likeliest
 from ray.rllib.core.rl_module.rl_module import RLModule
 from rllib_ppo import make_config, train

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 from arkanoid.envs import ArkanoidEnv
-from arkanoid.envs.capsules import capsule_by_weight
-from arkanoid.envs.grid import STATUS
-from arkanoid.envs.palette import CAPSULE, LUMA, PALETTE
+from arkanoid.envs.draw.palette import CAPSULE, LUMA, PALETTE
+from arkanoid.envs.game.capsules import capsule_by_weight
+from arkanoid.envs.observe.planes import STATUS
 from arkanoid.envs.rules import CAPSULES, FAST, PADDLE_TOP
 
 NOOP, FIRE = 0, 3

@@ -1,0 +1,23 @@
+"""Arguments that several commands take."""
+
+import argparse
+
+
+def add_model(parser: argparse.ArgumentParser) -> None:
+    """Describe the argument that names a model to ``parser``."""
+    parser.add_argument(
+        "model",
+        metavar="MODEL",
+        nargs="?",
+        help="the folder of a run or a model file in one; default: the agent that comes with the "
+        "package",
+    )
+
+
+def add_level(parser: argparse.ArgumentParser) -> None:
+    """Describe the option that names a level to ``parser``."""
+    parser.add_argument(
+        "--level",
+        help="where the game begins: a round's name, a level file or seeds:N-N; "
+        "default: as in the training",
+    )

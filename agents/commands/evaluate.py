@@ -1,0 +1,98 @@
+"""`arkanoid evaluate [MODEL ...]`: how good saved models are, against the baselines."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from ..experiment.runs import ModelFile
+from ..experiment.schema import SettingsError
+from ..experiment.settings import Experiment
+
+SUMMARY = "measure trained models against the baselines"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe the command to ``parser``."""
+    parser.usage = "%(prog)s [MODEL ...] [--json] [--plots FOLDER] [--key value ...]"
+    parser.add_argument(
+        "models",
+        metavar="MODEL",
+        nargs="*",
+        help="folders of runs, or model files in them; runs of one experiment that differ in "
+        "their seeds are measured as one agent; default: the agent that comes with the package",
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    parser.add_argument("--plots", metavar="FOLDER", help="draw the results into this folder")
+    parser.epilog = (
+        "The first run's own settings hold; --key value changes them, as in\n"
+        """--evaluation.suites '["training", "test", "named"]' --evaluation.level_episodes 20"""
+    )
+
+
+def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
+    """Evaluate, print and draw; return the exit status."""
+    models = [ModelFile.find(name) for name in arguments.models or [None]]
+    experiment = models[0].run.experiment(overrides)
+    agents = group_by_experiment(models, overrides)
+    from ..learn.model import load_policy
+    from ..measure.comparison import as_json, as_tables, compare
+
+    policies = {
+        name: [load_policy(model.path, experiment) for model in group]
+        for name, group in agents.items()
+    }
+    comparison = compare(experiment, policies, lambda message: print(message, file=sys.stderr))
+    described = {name: [model.describe() for model in group] for name, group in agents.items()}
+    if arguments.json:
+        print(json.dumps(as_json(experiment, comparison, described), indent=2))
+    else:
+        print(as_tables(experiment, comparison))
+    if arguments.plots:
+        from ..show.plots import plot_comparison
+
+        for path in plot_comparison(experiment, comparison, Path(arguments.plots)):
+            print(path, file=sys.stderr)
+    return 0
+
+
+def group_by_experiment(
+    models: Sequence[ModelFile], overrides: list[tuple[str, str]]
+) -> dict[str, list[ModelFile]]:
+    """Return the models by their agents: one agent is what differs in nothing but the seed.
+
+    A single agent is called ``agent``, several by their experiments' names. Raises `SettingsError`
+    if they were not trained to play the same game, or one is given twice.
+    """
+    for index, model in enumerate(models):
+        if model.path in [other.path for other in models[:index]]:
+            raise SettingsError(f"{model.path}: given twice; it counts once only")
+    groups: list[tuple[Experiment, list[ModelFile]]] = []
+    for model in models:
+        experiment = replace(model.run.experiment(overrides), seed=0, output=".")
+        for known, group in groups:
+            if experiment == known:
+                group.append(model)
+                break
+        else:
+            groups.append((experiment, [model]))
+    first = groups[0][0]
+    for experiment, group in groups[1:]:
+        if _game(experiment) != _game(first):
+            raise SettingsError(
+                f"{group[0].path}: trained with another 'env_id' or 'env' than {models[0].path}; "
+                f"evaluate them one after the other, or change it by --env.KEY VALUE"
+            )
+    if len(groups) == 1:
+        return {"agent": groups[0][1]}
+    named: dict[str, list[ModelFile]] = {}
+    for experiment, group in groups:
+        taken = sum(name.partition("#")[0] == experiment.name for name in named)
+        named[f"{experiment.name}#{taken + 1}" if taken else experiment.name] = group
+    return named
+
+
+def _game(experiment: Experiment) -> tuple[object, ...]:
+    return experiment.env_id, experiment.env

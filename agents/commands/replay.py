@@ -1,0 +1,155 @@
+"""`arkanoid replay FILE`: a recorded game in a window, as a film or picture, or checked."""
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..experiment.schema import SettingsError
+from ..show.film import RATES, write_film
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...envs.batch.replays import Replay
+
+SUMMARY = "show a recorded game, export it or check it"
+
+_EPILOG = """\
+keys in the window: space or P pause, R from the start, F fill the screen, Esc quit
+
+  arkanoid replay game.replay --export game.gif --from 10 --to 25 --height 256
+  arkanoid replay game.replay --export last.png        the last picture
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Describe the command to ``parser``."""
+    parser.add_argument("file", metavar="FILE", help="a replay, as `arkanoid play` saves it")
+    parser.add_argument(
+        "--speed",
+        type=_positive,
+        default=1.0,
+        metavar="X",
+        help="how many times as fast as it was played (default: 1)",
+    )
+    parser.add_argument(
+        "--export",
+        metavar="OUT",
+        help=f"write a film ({', '.join(RATES)}) or the last picture (.png); needs no display",
+    )
+    parser.add_argument(
+        "--verify",
+        action="store_true",
+        help="only play it again and see that it comes out the same, bit for bit",
+    )
+    parser.add_argument(
+        "--from", dest="start", type=_seconds, default=0.0, metavar="S", help="second it begins at"
+    )
+    parser.add_argument("--to", dest="stop", type=_seconds, metavar="S", help="second it ends at")
+    parser.add_argument(
+        "--height", type=int, default=512, metavar="N", help="of exported pictures (default: 512)"
+    )
+    parser.epilog = _EPILOG
+
+
+def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
+    """Show, export or check; return the exit status (1: another course; 130 after Ctrl-C)."""
+    # With the game come the kernels, and Numba, which is slow to import.
+    from ...envs.batch.playback import ReplayDivergedError
+    from ...envs.batch.replays import Replay
+
+    try:
+        replay = Replay.load(arguments.file)
+        if arguments.verify:
+            return _verify(replay)
+        if arguments.export is not None:
+            return _export(replay, arguments)
+        from ...envs.play.by_hand import view_replay
+
+        return 130 if view_replay(replay, arguments.speed) else 0
+    except OSError as error:
+        raise SettingsError(f"{error.filename}: {error.strerror}") from None
+    except (TypeError, ValueError) as error:
+        raise SettingsError(str(error)) from None
+    except ReplayDivergedError as error:
+        print(f"arkanoid: error: {arguments.file}: {error}", file=sys.stderr)
+        return 1
+
+
+def _verify(replay: "Replay") -> int:
+    from ...envs.batch.playback import play_replay
+
+    result = play_replay(replay)
+    print(
+        f"the same game, bit for bit: {result.decisions} decisions, score {result.score}, "
+        f"round {result.round}; recorded with release {replay.version}"
+    )
+    return 0
+
+
+def _export(replay: "Replay", arguments: argparse.Namespace) -> int:
+    path = Path(arguments.export)
+    suffix = path.suffix.lower()
+    rate = replay.frames_per_second * arguments.speed
+    if suffix in RATES:
+        stride = max(1, math.ceil(rate / RATES[suffix]))
+        write_film(path, _pictures(replay, arguments, stride), rate / stride)
+    elif suffix == ".png":
+        from ...envs.draw.png import write_png
+
+        *_, picture = _pictures(replay, arguments, 0)
+        write_png(path, picture)
+    else:
+        raise SettingsError(f"{path}: exports are {', '.join(RATES)} or .png")
+    print(path)
+    return 0
+
+
+def _pictures(
+    replay: "Replay", arguments: argparse.Namespace, stride: int
+) -> Iterator["NDArray[np.uint8]"]:
+    """Yield every so manieth picture of a part of a game, and its last; stride 0: only the last.
+
+    The sides are even numbers, for films have to have such.
+    """
+    from ...envs.batch.playback import replay_states
+    from ...envs.draw.picture import draw_world
+    from ...envs.draw.view import FULL_HEIGHT, FULL_WIDTH
+
+    height = arguments.height + arguments.height % 2
+    width = round(height * FULL_WIDTH / FULL_HEIGHT / 2) * 2
+    rate = replay.frames_per_second
+    last = replay.result.decisions
+    if arguments.stop is not None:
+        last = min(last, round(arguments.stop * rate))
+    first = round(arguments.start * rate)
+    if first > last:
+        raise SettingsError(
+            f"the part from second {arguments.start:g} on is empty; the game lasts "
+            f"{replay.result.decisions / rate:.1f} s"
+        )
+    for index, batch in enumerate(replay_states(replay)):
+        wanted = stride > 0 and index >= first and (index - first) % stride == 0
+        if wanted or index == last:
+            yield draw_world(batch.worlds, batch.rules, 0, height, width)
+        # Up to the end, so that the end is compared, too, if it is to be seen.
+        if index == last < replay.result.decisions:
+            return
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"must be a number above 0; got {text}")
+    return value
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"must be a number from 0 on; got {text}")
+    return value

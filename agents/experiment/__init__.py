@@ -1,0 +1,1 @@
+"""What was asked for, and where it is kept: settings and run folders."""

@@ -1,0 +1,1 @@
+"""Training: PPO, its networks, and what happens between two rollouts."""

@@ -1,0 +1,80 @@
+"""What happens beside a training: statistics, the progress bar, and stopping it."""
+
+import math
+import os
+from typing import Any
+
+import numpy as np
+from stable_baselines3.common.callbacks import BaseCallback
+from tqdm import tqdm  # type: ignore[import-untyped]
+
+from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
+
+# What the progress bar shows of the latest episodes, and how it calls it.
+_SHOWN = {"r": "return", "hits": "bricks", "rounds_cleared": "rounds"}
+
+
+class GameStatistics(BaseCallback):
+    """Logs the means of the game's own statistics over the latest episodes."""
+
+    def _on_step(self) -> bool:
+        return True
+
+    def _on_rollout_end(self) -> None:
+        for key in FINAL_KEYWORDS + SUMMED_KEYWORDS:
+            mean = _recent_mean(self.model, key)
+            if mean is not None:
+                self.logger.record(f"rollout/ep_{key}_mean", mean)
+
+
+class ProgressBar(BaseCallback):
+    """Shows decisions a second, and the latest episodes' mean return, bricks and rounds."""
+
+    def _on_training_start(self) -> None:
+        # Whole rollouts are played, so that the last one may go beyond what was asked for.
+        rollout = self.model.n_steps * self.training_env.num_envs  # type: ignore[attr-defined]
+        self._bar = tqdm(
+            initial=self.model.num_timesteps,
+            total=math.ceil(self.locals["total_timesteps"] / rollout) * rollout,
+            unit=" decisions",
+            unit_scale=True,
+            # A terminal is redrawn; a file gets few lines.
+            mininterval=0.2 if os.isatty(2) else 10.0,
+        )
+
+    def _on_step(self) -> bool:
+        self._bar.update(self.training_env.num_envs)
+        return True
+
+    def _on_rollout_end(self) -> None:
+        means = {name: _recent_mean(self.model, key) for key, name in _SHOWN.items()}
+        shown = {name: f"{mean:.2f}" for name, mean in means.items() if mean is not None}
+        self._bar.set_postfix(shown, refresh=False)
+
+    def _on_training_end(self) -> None:
+        self._bar.close()
+
+
+class StopRequest(BaseCallback):
+    """Ends the training after the decision in which it is asked to.
+
+    Attributes:
+        reason: why, or None.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.reason: str | None = None
+
+    def request(self, reason: str) -> None:
+        """Ask for the end."""
+        self.reason = reason
+
+    def _on_step(self) -> bool:
+        return self.reason is None
+
+
+def _recent_mean(model: Any, key: str) -> float | None:
+    """Return the mean of an episode statistic, or None before the first episode has ended."""
+    episodes = model.ep_info_buffer
+    return float(np.mean([episode[key] for episode in episodes])) if episodes else None

@@ -1,0 +1,59 @@
+"""The curriculum: how episodes begin in each stage of a training."""
+
+from typing import Any
+
+import numpy as np
+from stable_baselines3.common.callbacks import BaseCallback
+
+from ..adapter import GymnasiumVecEnv
+from ..experiment.settings import Curriculum, Experiment
+
+
+class Stages(BaseCallback):
+    """Begins the curriculum's stages in time, each with a new episode in every world.
+
+    Args:
+        experiment: its ``[curriculum]`` says which stages there are.
+        venv: the environment that is trained on.
+        memory: what it remembers, here from a checkpoint; kept up to date in place.
+    """
+
+    def __init__(
+        self, experiment: Experiment, venv: GymnasiumVecEnv, memory: dict[str, Any]
+    ) -> None:
+        super().__init__()
+        self._curriculum = experiment.curriculum
+        self._timesteps = experiment.training.timesteps
+        self._venv = venv
+        self._memory = memory
+        memory.setdefault("stage", 0)
+
+    def _on_rollout_start(self) -> None:
+        stage = stage_at(self._curriculum, self.model.num_timesteps / self._timesteps)
+        if stage == self._memory["stage"]:
+            return
+        self._memory["stage"] = stage
+        self._venv.set_options(stage_options(self._curriculum, stage, self._venv.num_envs))
+        model: Any = self.model
+        # Through the model's own environment, which may have wrapped ours.
+        model._last_obs = model.env.reset()
+        model._last_episode_starts = np.ones(self._venv.num_envs, np.bool_)
+
+    def _on_step(self) -> bool:
+        return True
+
+
+def stage_at(curriculum: Curriculum, part: float) -> int:
+    """Return the stage after a part of the training, from 0 on."""
+    return sum(part >= begins for begins in curriculum.stages)
+
+
+def stage_options(curriculum: Curriculum, stage: int, num_worlds: int) -> list[dict[str, Any]]:
+    """Return each world's options for `reset` in a stage."""
+    options: list[dict[str, Any]] = [{} for _ in range(num_worlds)]
+    for world, of_world in enumerate(options):
+        if curriculum.difficulty:
+            of_world["difficulty"] = curriculum.difficulty[stage] * (world + 1) / num_worlds
+        if curriculum.rounds:
+            of_world["level"] = 1 + world % curriculum.rounds[stage]
+    return options

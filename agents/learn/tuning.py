@@ -1,0 +1,227 @@
+"""A search for hyper-parameters: what is searched, and how a trial is trained and judged."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..experiment.runs import RunFolder
+from ..experiment.schema import SettingsError, check_value, parse_toml_value, toml_table, toml_value
+from ..experiment.settings import BEST, Experiment, load_experiment, read_toml
+
+if TYPE_CHECKING:
+    import optuna
+
+_BOUNDS = ("low", "high", "log", "step")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A setting that is searched: among choices, or between bounds.
+
+    Attributes:
+        key: of the setting, dotted.
+        choices: TOML texts of its values; none if there are bounds.
+        low, high: the bounds, which may be taken.
+        log: whether it is drawn on a logarithmic scale.
+        step: what it is a multiple of beyond ``low``; None: anything, or 1 for integers.
+    """
+
+    key: str
+    choices: tuple[str, ...] = ()
+    low: float = 0.0
+    high: float = 0.0
+    log: bool = False
+    step: float | None = None
+
+    def suggest(self, trial: "optuna.Trial") -> str:
+        """Return the TOML text of the value that a trial shall take."""
+        if self.choices:
+            return str(trial.suggest_categorical(self.key, self.choices))
+        if isinstance(self.low, int) and isinstance(self.high, int):
+            step = 1 if self.step is None else int(self.step)
+            return str(trial.suggest_int(self.key, self.low, self.high, step=step, log=self.log))
+        return repr(
+            trial.suggest_float(self.key, self.low, self.high, step=self.step, log=self.log)
+        )
+
+
+@dataclass(frozen=True)
+class Space:
+    """What is searched.
+
+    Attributes:
+        parameters: the settings.
+        measure: validation's mean that is to be large.
+        startup: trials before any is broken off.
+        warmup: decisions of a trial before it may be broken off.
+    """
+
+    parameters: tuple[Parameter, ...]
+    measure: str = "return"
+    startup: int = 5
+    warmup: int = 0
+
+
+def load_space(name: str) -> Space:
+    """Return the search space of a TOML file, or of a packaged one's name.
+
+    Raises `SettingsError` where it names a setting that is none, or values that it cannot take.
+    """
+    source, table = read_toml(name, suffix=".space.toml")
+    known = ("measure", "startup", "warmup", "parameters")
+    for key in table:
+        if key not in known:
+            raise SettingsError(f"{source}: unknown key {key!r}; known are {', '.join(known)}")
+    measure = table.get("measure", "return")
+    if measure not in BEST:
+        raise SettingsError(f"{source}: 'measure' must be one of {BEST}, not {measure!r}")
+    counts = {key: table.get(key, default) for key, default in (("startup", 5), ("warmup", 0))}
+    for key, count in counts.items():
+        if type(count) is not int or count < 0:
+            raise SettingsError(f"{source}: {key!r} must be an integer, at least 0, not {count!r}")
+    parameters = table.get("parameters")
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise SettingsError(f"{source}: [parameters] must have at least one setting to search")
+    found = tuple(_parameter(key, item, source) for key, item in parameters.items())
+    return Space(found, measure, **counts)
+
+
+def _parameter(key: str, item: Any, source: str) -> Parameter:
+    """Return a line of the table [parameters]."""
+    where = f"{source}: parameters.{key!r}"
+    if not isinstance(item, Mapping):
+        raise SettingsError(f"{where} must be a table such as {{low = 0.1, high = 1.0}}")
+    if set(item) == {"choices"}:
+        choices = item["choices"]
+        if not isinstance(choices, Sequence) or isinstance(choices, str) or not choices:
+            raise SettingsError(f"{where}: 'choices' must be a list of values")
+        texts = tuple(toml_value(choice) for choice in choices)
+        for choice in choices:
+            check_value(Experiment, key, choice, source)
+        return Parameter(key, texts)
+    if not {"low", "high"} <= set(item) <= set(_BOUNDS):
+        raise SettingsError(
+            f"{where} must have 'choices', or 'low' and 'high' and perhaps 'log' or 'step'"
+        )
+    for bound in ("low", "high"):
+        check_value(Experiment, key, item[bound], source)
+    low, high, log, step = item["low"], item["high"], item.get("log"), item.get("step")
+    numbers = [low, high, *([] if step is None else [step])]
+    if any(type(number) not in (int, float) for number in numbers) or low >= high:
+        raise SettingsError(f"{where}: 'low', 'high' and 'step' must be numbers, 'low' the smaller")
+    if log not in (None, True, False) or (log and (step is not None or low <= 0)):
+        raise SettingsError(f"{where}: 'log' must be true or false, without 'step', above 0")
+    return Parameter(key, low=low, high=high, log=bool(log), step=step)
+
+
+def open_study(folder: Path, space: Space, seed: int) -> "optuna.Study":
+    """Return the study that is kept in a folder, a new one if there is none.
+
+    It is a file that needs no server, and several processes may work on it at once.
+    """
+    import optuna
+    from optuna.storages import JournalStorage
+    from optuna.storages.journal import JournalFileBackend
+
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    folder.mkdir(parents=True, exist_ok=True)
+    storage = JournalStorage(JournalFileBackend(str(folder / "study.journal")))
+    study = optuna.create_study(
+        storage=storage, study_name="arkanoid", direction="maximize", load_if_exists=True
+    )
+    # A search that goes on must not draw again what it drew at first.
+    study.sampler = optuna.samplers.TPESampler(seed=seed + len(study.trials))
+    study.pruner = optuna.pruners.MedianPruner(space.startup, space.warmup)
+    return study
+
+
+def search(
+    study: "optuna.Study",
+    space: Space,
+    config: str,
+    overrides: list[tuple[str, str]],
+    folder: Path,
+    trials: int,
+) -> None:
+    """Train trials until the study has so many that are complete or broken off."""
+    from optuna.study import MaxTrialsCallback
+    from optuna.trial import TrialState
+
+    counted = (TrialState.COMPLETE, TrialState.PRUNED)
+    if len(study.get_trials(deepcopy=False, states=counted)) >= trials:
+        return
+    study.optimize(
+        lambda trial: _run_trial(trial, space, config, overrides, folder),
+        callbacks=[MaxTrialsCallback(trials, states=counted), _tell],
+    )
+
+
+def _run_trial(
+    trial: "optuna.Trial",
+    space: Space,
+    config: str,
+    overrides: list[tuple[str, str]],
+    folder: Path,
+) -> float:
+    """Train once; return the last measurement."""
+    import optuna
+
+    from .training import INTERRUPTED, train
+
+    chosen = [(parameter.key, parameter.suggest(trial)) for parameter in space.parameters]
+    try:
+        experiment = load_experiment(config, [*overrides, *chosen])
+    except SettingsError as error:
+        # Each value is legal; together they are not (a batch that does not divide, say).
+        print(f"trial {trial.number}: {error}")
+        raise optuna.TrialPruned from None
+    experiment = replace(
+        experiment,
+        name=f"trial{trial.number}",
+        output=str(folder),
+        seed=experiment.seed + trial.number,
+    )
+    latest = float("-inf")
+
+    def judge(step: int, means: dict[str, float]) -> str | None:
+        nonlocal latest
+        latest = means[space.measure]
+        trial.report(latest, step)
+        return "pruned" if trial.should_prune() else None
+
+    outcome = train(experiment, RunFolder.create(experiment), on_measure=judge)
+    if outcome == INTERRUPTED:
+        raise KeyboardInterrupt
+    if outcome == "pruned":
+        raise optuna.TrialPruned
+    return latest
+
+
+def _tell(study: "optuna.Study", trial: "optuna.trial.FrozenTrial") -> None:
+    value = "" if trial.value is None else f"{trial.value:.4f} "
+    print(f"trial {trial.number}: {trial.state.name.lower()} {value}{json.dumps(trial.params)}")
+
+
+def best_as_toml(study: "optuna.Study", space: Space) -> str:
+    """Return the best trial's settings as TOML; raises `SettingsError` if there is none yet."""
+    import optuna
+
+    try:
+        best = study.best_trial
+    except ValueError:
+        raise SettingsError("no trial is complete yet: there is no best one") from None
+    complete = study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,))
+    table: dict[str, Any] = {}
+    for parameter in space.parameters:
+        value = best.params[parameter.key]
+        # Choices are texts of TOML, numbers are themselves.
+        value = parse_toml_value(value) if parameter.choices else value
+        *path, name = parameter.key.split(".")
+        inner = table
+        for part in path:
+            inner = inner.setdefault(part, {})
+        inner[name] = value
+    head = f"# {space.measure} {best.value:.4f}, trial {best.number}, of {len(complete)} complete"
+    return f"{head}\n{toml_table(table)}"

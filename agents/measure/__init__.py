@@ -1,0 +1,1 @@
+"""How good a policy is: the same games for agents and baselines, with intervals."""

@@ -1,0 +1,77 @@
+"""Policies without a network, to compare agents with."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from gymnasium.spaces import Discrete
+from gymnasium.vector import VectorEnv
+from numpy.typing import NDArray
+
+from ...envs.rules import FIELD_WIDTH
+from ..experiment.worlds import native
+from .planner import Planner
+from .policy import Policy, encode_actions, paddle_reach
+
+
+class NoOp:
+    """Only watches."""
+
+    def __init__(self, space: Any) -> None:
+        self._space = space
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return the actions that do nothing."""
+        return encode_actions(self._space, np.zeros(len(worlds)))
+
+
+class RandomPolicy:
+    """Draws every action with the same probability, from a generator of its own.
+
+    What a world's n-th action is depends neither on which other worlds still play nor on them.
+    """
+
+    def __init__(self, space: Any, num_worlds: int, seed: int) -> None:
+        self._space = space
+        self._num_worlds = num_worlds
+        self._random = np.random.default_rng(seed)
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return random actions."""
+        if isinstance(self._space, Discrete):
+            return self._random.integers(int(self._space.n), size=self._num_worlds)[worlds]
+        size = (self._num_worlds, *self._space.shape)
+        return self._random.uniform(-1.0, 1.0, size)[worlds].astype(np.float32)
+
+
+class BallFollower:
+    """Keeps the paddle's middle below the first ball; never fires.
+
+    ``layout`` names the slices of an observation: ``"paddle"`` and ``"ball_x"`` begin with the
+    paddle's middle and the first ball's position across the field, on the same scale. ``reach`` is
+    how far the paddle can go in a decision, on that scale.
+    """
+
+    def __init__(self, space: Any, layout: Mapping[str, slice], reach: float) -> None:
+        self._space = space
+        self._reach = reach
+        self._paddle = layout["paddle"].start
+        self._ball = layout["ball_x"].start
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return actions for observations [n, size]."""
+        gap = observations[:, self._ball] - observations[:, self._paddle]
+        return encode_actions(self._space, gap / self._reach)
+
+
+def make_baseline(name: str, worlds: VectorEnv[Any, Any, Any], seed: int) -> Policy:
+    """Return the baseline of a name, to play in ``worlds`` with the observation ``vector``."""
+    space = worlds.single_action_space
+    layout: Mapping[str, slice] = native(worlds).layout
+    if name == "no-op":
+        return NoOp(space)
+    if name == "random":
+        return RandomPolicy(space, worlds.num_envs, seed)
+    if name == "ball-follower":
+        return BallFollower(space, layout, paddle_reach(worlds) * 2 / FIELD_WIDTH)
+    return Planner(worlds)

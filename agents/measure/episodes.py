@@ -1,0 +1,98 @@
+"""Playing whole episodes with a policy, one a seed, many at once."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import VectorEnv
+from numpy.typing import NDArray
+
+from ..adapter import GymnasiumVecEnv
+from .policy import Policy
+from .suites import Start
+
+# What an episode's info tells of it: as it is at its end, or summed over its decisions.
+FINAL_KEYWORDS = ("score", "lives", "round", "bricks_left")
+SUMMED_KEYWORDS = ("hits", "rounds_cleared")
+
+# What is measured of an episode. `cleared` is 1 if the level that it began on was cleared.
+MEASURES = ("cleared", "return", "steps", *FINAL_KEYWORDS, *SUMMED_KEYWORDS)
+
+
+def adapt(worlds: VectorEnv[Any, Any, Any]) -> GymnasiumVecEnv:
+    """Return the worlds for stable-baselines3, with the game's own statistics of each episode."""
+    return GymnasiumVecEnv(worlds, FINAL_KEYWORDS, SUMMED_KEYWORDS)
+
+
+def play_episodes(
+    worlds: VectorEnv[Any, Any, Any],
+    policy: Policy,
+    seed: int,
+    starts: Sequence[Start] = (Start("whole games"),),
+    whole: bool = True,
+) -> dict[str, NDArray[np.float64]]:
+    """Play one episode in each world, as many on each level; return what was reached.
+
+    An episode depends on nothing but its seed, its level and the policy. Only a world's first one
+    counts: taking whichever episodes end first would favour short ones.
+
+    Args:
+        worlds: native and in SAME_STEP mode, as many as there are levels times episodes.
+        policy: who plays.
+        seed: of each level's first episode; the next ones follow.
+        starts: how episodes begin, one a level.
+        whole: whether an episode lasts until the game is over, or until its level is cleared.
+
+    Returns:
+        For each of `MEASURES` an array [episodes, levels].
+    """
+    count = worlds.num_envs
+    episodes = count // len(starts)
+    if episodes * len(starts) != count:
+        raise ValueError(f"{count} worlds are not the same number for each of {len(starts)} levels")
+    observations, _ = begin_episodes(worlds, seed, starts, episodes)
+    measured = {name: np.zeros(count) for name in MEASURES}
+    playing = np.arange(count)
+    space = worlds.single_action_space
+    actions = np.zeros((count, *(space.shape or ())), space.dtype)
+    while playing.size:
+        actions[playing] = policy(observations[playing], playing)
+        observations, rewards, terminated, truncated, infos = worlds.step(actions)
+        over = terminated | truncated
+        latest = _latest(infos, over)
+        measured["return"][playing] += rewards[playing]
+        measured["steps"][playing] += 1
+        for name in SUMMED_KEYWORDS:
+            measured[name][playing] += latest[name][playing]
+        for name in FINAL_KEYWORDS:
+            measured[name][playing] = latest[name][playing]
+        measured["cleared"][playing] = measured["rounds_cleared"][playing] > 0
+        ends = over[playing] if whole else over[playing] | (measured["cleared"][playing] > 0)
+        playing = playing[~ends]
+    return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
+
+
+def begin_episodes(
+    worlds: VectorEnv[Any, Any, Any], seed: int, starts: Sequence[Start], episodes: int
+) -> tuple[Any, dict[str, Any]]:
+    """Begin the episodes of every level, level by level; return observations and infos."""
+    seeds = [seed + episode for _ in starts for episode in range(episodes)]
+    observations: Any = None
+    infos: dict[str, Any] = {}
+    for index, start in enumerate(starts):
+        mask = np.zeros(worlds.num_envs, np.bool_)
+        mask[index * episodes : (index + 1) * episodes] = True
+        # What is not said anew would stay in force from the worlds' earlier episodes.
+        as_configured = {"level": None, "difficulty": None}
+        options = {**as_configured, **(start.options or {}), "reset_mask": mask}
+        observations, infos = worlds.reset(seed=seeds, options=options)  # type: ignore[arg-type]
+    return observations, infos
+
+
+def _latest(infos: dict[str, Any], over: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
+    """Return what a step's info tells, of the final one where an episode is over."""
+    names = FINAL_KEYWORDS + SUMMED_KEYWORDS
+    if not over.any():
+        return {name: infos[name] for name in names}
+    final = infos["final_info"]
+    return {name: np.where(over, final[name], infos[name]) for name in names}

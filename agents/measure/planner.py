@@ -1,0 +1,128 @@
+"""A player that looks ahead with the game itself: what it foresees comes about exactly.
+
+It is no agent but an upper bound to compare agents with: it sees the whole state, the random
+numbers among it, and tries out what it might do before it does it.
+"""
+
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import VectorEnv
+from numpy.typing import NDArray
+
+from ...envs import ArkanoidVectorEnv
+from ...envs.rules import BALL_RADIUS, FIELD_HEIGHT, FIELD_WIDTH, PADDLE_TOP
+from ..experiment.worlds import native
+from .policy import encode_actions, paddle_reach
+
+# Where on the paddle the next ball shall land, in half widths from its middle: what is tried out.
+OFFSETS = np.linspace(-0.9, 0.9, 13)
+# How many decisions are looked ahead, and how many of them are played, at the most, before the
+# planner looks again. A ball is away from the paddle for about 30.
+HORIZON = 80
+PLAYED = 24
+# A life is worth more than all that can be gained within the horizon.
+PRICE_OF_A_LIFE = 10.0
+# What comes later counts a little less: of two plans that gain the same, the faster one is chosen.
+DISCOUNT = 0.995
+
+
+class Planner:
+    """Plays in ``worlds`` the best of a few plans, found by playing each of them in a copy.
+
+    A plan is to catch the next ball with a certain place of the paddle, and further ones with its
+    middle. ``worlds`` must be native and have the observation ``vector``.
+    """
+
+    def __init__(self, worlds: VectorEnv[Any, Any, Any], seed: int = 0) -> None:
+        self._worlds = native(worlds)
+        self._reach = paddle_reach(worlds)
+        self._scouts = ArkanoidVectorEnv(
+            len(OFFSETS), autoreset_mode="SameStep", copy=False, **self._worlds.config.plain()
+        )
+        self._plans: dict[int, list[Any]] = {}
+        self._random = np.random.default_rng(seed)
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return the next actions of the plans, new ones where they are used up."""
+        actions = []
+        for world in worlds.tolist():
+            if not self._plans.get(world):
+                # The first action last, for it is taken from the end.
+                self._plans[world] = self._plan(world)[::-1]
+            actions.append(self._plans[world].pop())
+        return np.array(actions)
+
+    def _plan(self, world: int) -> list[Any]:
+        """Return the first actions of the best plan for a world."""
+        scouts = self._scouts
+        observations, _ = scouts.spread(self._worlds.snapshot(world))
+        count = len(OFFSETS)
+        values = np.zeros(count)
+        # Its episode goes on; and the next ball has not landed on the paddle.
+        playing, waiting = np.ones(count, np.bool_), np.ones(count, np.bool_)
+        landed = np.full(count, PLAYED)
+        taken = []
+        for decision in range(HORIZON):
+            falling = self._lowest_falling(observations)[1]
+            offsets = np.where(waiting, OFFSETS, 0.0)
+            taken.append(self._act(observations, offsets))
+            observations, rewards, terminated, truncated, infos = scouts.step(taken[-1])
+            over = terminated | truncated
+            lost = np.where(over, terminated, infos["lives_lost"])
+            gain = (rewards - PRICE_OF_A_LIFE * lost) * DISCOUNT**decision
+            values += np.where(playing, gain, 0.0)
+            playing &= ~over
+            rises = falling & ~self._lowest_falling(observations)[1]
+            low = self._heights(observations).min(axis=1) < PADDLE_TOP + 2.0
+            lands = waiting & rises & low
+            landed[lands] = np.minimum(landed[lands], decision + 1)
+            waiting &= ~lands
+        # Equal plans are drawn from, so that no loop lasts for ever.
+        best = self._random.choice(np.flatnonzero(values >= values.max() - 1e-12))
+        return [actions[best] for actions in taken[: landed[best]]]
+
+    def _act(self, observations: NDArray[Any], offsets: NDArray[Any]) -> NDArray[Any]:
+        """Return the actions that bring the paddle's places ``offsets`` to where balls land."""
+        target, _ = self._lowest_falling(observations)
+        paddle = observations[:, self._scouts.layout["paddle"]]
+        middle = (paddle[:, 0] + 1.0) * (FIELD_WIDTH / 2)
+        half = paddle[:, 1] * (FIELD_WIDTH / 2)
+        moves = (target - offsets * half - middle) / self._reach
+        return encode_actions(self._scouts.single_action_space, moves, fire=True)
+
+    def _lowest_falling(self, observations: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.bool_]]:
+        """Return where the next ball comes down to the paddle, and whether one is falling.
+
+        Of balls that rise, the place of the first one. Bricks and enemies in the way are left out:
+        the trial tells what they change.
+        """
+        layout = self._scouts.layout
+        rows = np.arange(len(observations))
+        there = observations[:, layout["ball_in_play"]] > 0
+        x = (observations[:, layout["ball_x"]] + 1.0) * (FIELD_WIDTH / 2)
+        vx, vy = observations[:, layout["ball_vx"]], observations[:, layout["ball_vy"]]
+        height = self._heights(observations) - PADDLE_TOP - BALL_RADIUS
+        falls = there & (vy < 0) & (height > -PADDLE_TOP)
+        # In ticks times the fastest ball's speed, by which velocities are divided.
+        times = np.where(falls, height / np.where(falls, -vy, 1.0), np.inf)
+        next_ball = times.argmin(axis=1)
+        first = np.where(falls.any(axis=1), next_ball, there.argmax(axis=1))
+        time = np.where(np.isfinite(times[rows, first]), times[rows, first], 0.0)
+        landing = x[rows, first] + vx[rows, first] * time
+        any_falls: NDArray[np.bool_] = np.asarray(falls.any(axis=1))
+        return _between_walls(landing), any_falls
+
+    def _heights(self, observations: NDArray[Any]) -> NDArray[Any]:
+        """Return the balls' heights; those of balls that are not there are the field's."""
+        layout = self._scouts.layout
+        there = observations[:, layout["ball_in_play"]] > 0
+        heights = (observations[:, layout["ball_y"]] + 1.0) * (FIELD_HEIGHT / 2)
+        return np.where(there, heights, FIELD_HEIGHT)
+
+
+def _between_walls(x: NDArray[Any]) -> NDArray[Any]:
+    """Return where a ball is that would be at x without walls, by mirrors."""
+    width = FIELD_WIDTH - 2 * BALL_RADIUS
+    place = np.mod(x - BALL_RADIUS, 2 * width)
+    return BALL_RADIUS + np.minimum(place, 2 * width - place)

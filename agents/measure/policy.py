@@ -1,0 +1,40 @@
+"""What plays: a policy, and how it says what it wants in every form of actions."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from gymnasium.spaces import Discrete
+from gymnasium.vector import VectorEnv
+from numpy.typing import NDArray
+
+from ...envs.rules import PADDLE_SPEED
+from ..experiment.worlds import native
+
+
+class Policy(Protocol):
+    """Whoever plays."""
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return actions [n, ...] for observations [n, ...] of the worlds of these indices [n]."""
+        ...
+
+
+def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArray[Any]:
+    """Return the actions that move the paddle, and fire where one can.
+
+    Args:
+        space: `Discrete`, (no-op, left, right), perhaps once more with fire; or velocity and fire.
+        moves: how far, in what the paddle can go in a decision, [n]. A discrete action goes all the
+            way or not at all, whichever ends nearer: otherwise the paddle would tremble.
+        fire: whether to fire.
+    """
+    if isinstance(space, Discrete):
+        indices = np.where(moves < -0.5, 1, np.where(moves > 0.5, 2, 0))
+        return indices + 3 if fire and int(space.n) > 3 else indices
+    velocities = np.clip(moves, -1.0, 1.0)
+    return np.stack([velocities, np.full(len(moves), 1.0 if fire else -1.0)], 1, dtype=np.float32)
+
+
+def paddle_reach(worlds: VectorEnv[Any, Any, Any]) -> float:
+    """Return how far the paddle can go in a decision, in brick widths."""
+    return PADDLE_SPEED * float(native(worlds).config.frame_skip)

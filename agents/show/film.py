@@ -1,0 +1,96 @@
+"""Films of the game, written picture by picture, without a display."""
+
+import contextlib
+import itertools
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..experiment.schema import SettingsError
+
+Picture = NDArray[np.uint8]
+
+# Pictures a second that make a smooth film; more only make it larger.
+RATES = {".gif": 20.0, ".mp4": 60.0}
+_GIF_COLOURS = 256
+_GIF_UNIT = 10  # milliseconds: a GIF counts hundredths of a second
+_QUALITY = 8  # of 10
+
+
+def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
+    """Write a film of pictures, uint8 [height, width, 3], ``rate`` of them a second.
+
+    The path's suffix, one of `RATES`, says which kind. The sides of an ``.mp4`` must be even.
+
+    Raises:
+        SettingsError: of this suffix there are no films, there is no picture, or imageio-ffmpeg
+            is not installed, and needed.
+        ModuleNotFoundError: the extra `train` is not installed, and needed.
+        OSError: the file can't be written.
+    """
+    if path.suffix not in RATES:
+        raise SettingsError(f"{path}: films are written as {' or '.join(RATES)}")
+    rest = iter(pictures)
+    first = next(rest, None)
+    if first is None:
+        raise SettingsError(f"{path}: there is no picture to be written")
+    write = _write_gif if path.suffix == ".gif" else _write_mp4
+    write(path, itertools.chain([first], rest), rate)
+
+
+def _write_gif(path: Path, pictures: Iterator[Picture], rate: float) -> None:
+    from PIL import Image
+
+    first = next(pictures)
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_gif_palette(first).tobytes())
+
+    def images() -> Iterator[Any]:
+        for index, picture in enumerate(itertools.chain([first], pictures)):
+            image = Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
+            # Rounding the times, not the durations, keeps the pace.
+            begin, end = (round(at * 1000 / _GIF_UNIT / rate) for at in (index, index + 1))
+            image.info["duration"] = (end - begin) * _GIF_UNIT
+            yield image
+
+    rest = images()
+    next(rest).save(path, save_all=True, append_images=rest, loop=0, optimize=False)
+
+
+def _write_mp4(path: Path, pictures: Iterator[Picture], rate: float) -> None:
+    try:
+        from imageio_ffmpeg import write_frames
+    except ModuleNotFoundError:
+        raise SettingsError(
+            f"{path}: to write .mp4, run `pip install imageio-ffmpeg`; .gif needs only "
+            "the extra `train`"
+        ) from None
+    first = next(pictures)
+    height, width, _ = first.shape
+    writer = write_frames(
+        path,
+        (width, height),
+        fps=rate,  # pyright: ignore[reportArgumentType] (guessed from the default, a whole number)
+        quality=_QUALITY,
+        macro_block_size=2,
+    )
+    with contextlib.closing(writer):
+        writer.send(None)
+        for picture in itertools.chain([first], pictures):
+            writer.send(np.ascontiguousarray(picture))
+
+
+def _gif_palette(picture: Picture) -> NDArray[np.uint8]:
+    """Return a film's colours, uint8 [n, 3]: the game's, and a picture's most frequent others.
+
+    All pictures get the same: with palettes of their own they would flicker.
+    """
+    from ...envs.draw.palette import PALETTE
+
+    found, counts = np.unique(picture.reshape(-1, 3), axis=0, return_counts=True)
+    ranked = np.concatenate([np.rint(PALETTE).astype(np.uint8), found[np.argsort(-counts)]])
+    _, places = np.unique(ranked, axis=0, return_index=True)
+    return ranked[np.sort(places)[:_GIF_COLOURS]]

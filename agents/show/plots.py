@@ -1,0 +1,132 @@
+"""Pictures of results: who reaches what, level by level, and how it was learnt."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ..experiment.settings import Experiment
+from ..learn.curves import STEP
+from ..measure.comparison import COLUMNS, Comparison, Results, level_interval, summarise
+from ..measure.intervals import Interval, bootstrap_interval
+from ..measure.suites import Start, make_suites
+
+# What the bars show.
+_BARS = ("cleared", "score", "hits", "steps")
+# What the curves show: the key in the curves' file, and its heading.
+_CURVES = {
+    "rollout/ep_rew_mean": "return, training",
+    "rollout/ep_hits_mean": "brick hits, training",
+    "rollout/ep_rounds_cleared_mean": "rounds cleared, training",
+    "validation/cleared": "cleared rate, validation",
+    "validation/return": "return, validation",
+    "validation/score": "score, validation",
+}
+_POINTS = 200
+
+
+def plot_comparison(experiment: Experiment, comparison: Comparison, folder: Path) -> list[Path]:
+    """Draw a comparison into PNG files of a folder; return their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    suites = make_suites(experiment)
+    paths = []
+    for name, results in comparison.items():
+        figures = {name: plot_policies(name, results)}
+        if len(suites[name].starts) > 1:
+            figures[f"{name}-levels"] = plot_levels(name, suites[name].starts, results)
+        for stem, figure in figures.items():
+            paths.append(folder / f"{stem}.png")
+            figure.savefig(paths[-1], dpi=120)
+    return paths
+
+
+def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:
+    """Draw the means of all policies, with their intervals."""
+    figure = Figure(figsize=(3 * len(_BARS), 3.2), layout="constrained")
+    names = list(results)
+    for axes, measure in zip(figure.subplots(1, len(_BARS)), _BARS, strict=True):
+        intervals = [summarise(results[name][measure])["mean"] for name in names]
+        axes.barh(names, [interval.mean for interval in intervals], xerr=_errors(intervals))
+        axes.invert_yaxis()
+        axes.set_xlabel(COLUMNS[measure])
+        axes.set_xlim(left=0)
+        if measure != _BARS[0]:
+            axes.set_yticks([])
+    figure.suptitle(title)
+    return figure
+
+
+def plot_levels(title: str, starts: Sequence[Start], results: Mapping[str, Results]) -> Figure:
+    """Draw the cleared rate of all policies on each level, with their intervals."""
+    figure = Figure(figsize=(8, 1.2 + 0.28 * len(starts)), layout="constrained")
+    axes = figure.subplots()
+    places = np.arange(len(starts))
+    for index, (name, measured) in enumerate(results.items()):
+        shift = 0.5 * (index / max(1, len(results) - 1) - 0.5)
+        intervals = [level_interval(measured["cleared"], level) for level in places.tolist()]
+        axes.errorbar(
+            [interval.mean for interval in intervals],
+            places + shift,
+            xerr=_errors(intervals),
+            fmt="o",
+            markersize=4,
+            label=name,
+        )
+    axes.set_yticks(places, [start.name for start in starts])
+    axes.invert_yaxis()
+    axes.set_xlabel("cleared rate")
+    axes.set_xlim(-0.05, 1.05)
+    axes.grid(axis="x", alpha=0.3)
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    axes.set_title(title)
+    return figure
+
+
+def plot_curves(curves: Sequence[Sequence[Mapping[str, Any]]]) -> Figure:
+    """Draw the learning curves of one agent's runs: their mean, and its interval over the runs."""
+    shown = {
+        key: title
+        for key, title in _CURVES.items()
+        if all(any(key in row for row in curve) for curve in curves)
+    }
+    rows = max(1, -(-len(shown) // 3))
+    figure = Figure(figsize=(12, 3 * rows), layout="constrained")
+    grid = figure.subplots(rows, 3, squeeze=False).ravel()
+    for axes, (key, title) in zip(grid, shown.items(), strict=False):
+        steps, means, lows, highs = mean_curve(curves, key)
+        axes.plot(steps, means)
+        axes.fill_between(steps, lows, highs, alpha=0.25)
+        axes.set_title(title, fontsize=10)
+        axes.set_xlabel("decisions")
+        axes.grid(alpha=0.3)
+    for axes in grid[len(shown) :]:
+        axes.set_axis_off()
+    return figure
+
+
+def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArray[np.float64]:
+    """Return decisions, means and ends of their 95 % intervals over the runs, [4, points].
+
+    The curves are read at the same decisions, between measurements along straight lines, as far as
+    all of them go.
+    """
+    series = [
+        np.array([(row[STEP], row[key]) for row in curve if key in row], np.float64)
+        for curve in curves
+    ]
+    first, last = max(one[0, 0] for one in series), min(one[-1, 0] for one in series)
+    steps = np.linspace(first, max(first, last), _POINTS)
+    values = np.stack([np.interp(steps, one[:, 0], one[:, 1]) for one in series])
+    intervals = np.array([bootstrap_interval(values[:, at]) for at in range(_POINTS)])
+    lines: NDArray[np.float64] = np.concatenate([steps[None], intervals.T])
+    return lines
+
+
+def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:
+    """Return the distances from the means to the intervals' ends, [2, n], none below zero."""
+    distances = [[i.mean - i.low for i in intervals], [i.high - i.mean for i in intervals]]
+    errors: NDArray[np.float64] = np.maximum(0.0, np.array(distances))
+    return errors

@@ -1,0 +1,1 @@
+"""Worlds that are stepped together, and what can be kept of their games."""

@@ -1,0 +1,34 @@
+"""What the state of a world depends on besides itself."""
+
+import hashlib
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..config import Config
+from ..levels.plan import LevelPlan
+from ..rules import RULES_VERSION
+from ..state import Outcome, World
+
+
+def describe_setup(
+    config: Config, plan: LevelPlan, rules: NDArray[Any], observations: "np.dtype[Any]"
+) -> bytes:
+    """Return what a state depends on besides itself, as JSON: rules, configuration and levels.
+
+    Levels count by their contents, for a file may change and keep its name.
+    """
+    keywords = config.plain()
+    del keywords["levels"]
+    keywords["size"] = config.picture_size
+    levels = (plan.table.tobytes(), plan.seeds, plan.endless, len(plan.names))
+    layout = (World.descr, Outcome.descr, rules.tobytes(), observations.str)
+    setup = {
+        "rules": RULES_VERSION,
+        "config": keywords,
+        "levels": hashlib.sha256(repr(levels).encode()).hexdigest()[:16],
+        "layout": hashlib.sha256(repr(layout).encode()).hexdigest()[:16],
+    }
+    return json.dumps(setup).encode()

@@ -1,0 +1,127 @@
+"""The state of a batch's worlds as bytes, refused where they do not belong.
+
+A snapshot is sealed (`sealed`) with this content:
+
+    4 bytes  length of the setup; 4 bytes: number of worlds
+    setup    JSON: the rules' version, the configuration, digests of the levels and of the layout
+    worlds   `World` records, their random generators among them
+    outcomes `Outcome` records of the latest step
+    observations, the latest of each world: a stack of pictures remembers earlier ones
+"""
+
+import json
+import struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...physics.kernels.sealed import seal, unseal
+from .batch import Batch
+
+_MARK = b"ARKASNAP"
+_FORMAT = 1
+_SIZES = struct.Struct("<II")
+
+
+def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
+    """Return the state of all worlds of a batch, or of one.
+
+    Raises:
+        RuntimeError: a world was never reset, and has no state.
+        ValueError: there is no such world.
+    """
+    batch.check_world(world)
+    share = slice(None) if world is None else slice(world, world + 1)
+    worlds = batch.worlds[share]
+    if not batch.seeded[share].all():
+        raise RuntimeError("there is no state yet: reset the environment before a snapshot")
+    content = (
+        _SIZES.pack(len(batch.setup), len(worlds)),
+        batch.setup,
+        worlds.tobytes(),
+        batch.outcomes[share].tobytes(),
+        batch.observations[share].tobytes(),
+    )
+    return seal(_MARK, _FORMAT, b"".join(content))
+
+
+def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
+    """Go on from a snapshot of as many worlds as the batch has.
+
+    Raises:
+        TypeError, ValueError: see `_unpack`, or it has another number of worlds; nothing changes.
+    """
+    state = _unpack(batch, snapshot)
+    if len(state[0]) != batch.num_worlds:
+        raise ValueError(
+            f"the snapshot has another number of worlds, {len(state[0])} instead of "
+            f"{batch.num_worlds}; spread() takes that of one world to all"
+        )
+    batch.restore(*state)
+
+
+def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
+    """Bring every world of a batch into the state of a snapshot of one world.
+
+    Raises:
+        TypeError, ValueError: see `_unpack`, or it has several worlds; nothing changes then.
+    """
+    state = _unpack(batch, snapshot)
+    if len(state[0]) != 1:
+        raise ValueError(
+            f"the snapshot has {len(state[0])} worlds, and spread() takes that of one: of a single "
+            "environment, or snapshot(world)"
+        )
+    batch.restore(*state)
+
+
+def _unpack(
+    batch: Batch, snapshot: bytes
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[Any]]:
+    """Return the worlds (bytes [n, k]), outcomes (bytes [n, k]) and observations of a snapshot.
+
+    Raises:
+        TypeError: it is not bytes.
+        ValueError: it is corrupt, of another release, rules, configuration or levels, or it has an
+            episode that is over, where those begin anew in the same step.
+    """
+    content = unseal("snapshot", _MARK, _FORMAT, snapshot)
+    length, count = _SIZES.unpack_from(content)
+    place = _SIZES.size + length
+    setup = content[_SIZES.size : place]
+    if setup != batch.setup:
+        theirs, ours = json.loads(bytes(setup)), json.loads(batch.setup)
+        if theirs != ours:  # not only written differently, as 1 and 1.0
+            raise ValueError(_difference(theirs, ours))
+    parts: list[NDArray[Any]] = []
+    for array in (batch.worlds, batch.outcomes, batch.observations):
+        size = count * array[0].nbytes
+        parts.append(np.frombuffer(content[place : place + size], np.uint8).reshape(count, -1))
+        place += size
+    worlds, outcomes, observations = parts
+    batch.check_over(worlds)
+    shape = (count, *batch.observations.shape[1:])
+    return worlds, outcomes, observations.view(batch.observations.dtype).reshape(shape)
+
+
+def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
+    """Return in words what two setups differ in."""
+    if theirs["rules"] != ours["rules"]:
+        return (
+            f"the snapshot is of the rules' version {theirs['rules']}, and this release plays "
+            f"version {ours['rules']}: restore it with the release that took it"
+        )
+    for name in ours["config"]:
+        there, here = theirs["config"].get(name), ours["config"][name]
+        if there != here:
+            return (
+                f"the snapshot is of another configuration: {name} is {there!r} there, and "
+                f"{here!r} here"
+            )
+    if theirs["levels"] != ours["levels"]:
+        return "the snapshot is of other levels: make the environment with the same `levels`"
+    return (
+        "the snapshot is of another release, which kept its state differently: restore it with the "
+        "release that took it"
+    )

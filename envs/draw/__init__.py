@@ -1,0 +1,1 @@
+"""Pictures of a world, drawn by kernels without a display."""

@@ -1,0 +1,63 @@
+"""Where the game lies in a picture of any size."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..rules import BRICK_HEIGHT, COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, LATTICE_TOP, ROWS
+
+# Around the field; lengths in brick widths.
+WALL_WIDTH = 0.5
+HEADER_HEIGHT = 1.5  # above the ceiling's wall, for the score line
+FULL_WIDTH = FIELD_WIDTH + 2 * WALL_WIDTH
+FULL_HEIGHT = FIELD_HEIGHT + WALL_WIDTH + HEADER_HEIGHT
+# The gates in the walls: how wide those in the ceiling are, and where the exit on the right begins
+# and ends.
+GATE_WIDTH = 1.0
+EXIT_BOTTOM = 1.25
+EXIT_TOP = 2.5
+# Pixels per brick width below which nobody could read the score line. Then it and the ceiling's
+# wall are left out, and the field fills the height (84 x 84: exactly 6 pixels per brick width).
+HEADER_SCALE = 8.0
+
+# Lengths in pixels, x to the right and y down.
+View = np.dtype(
+    (
+        np.record,
+        [
+            ("scale", np.float64),  # pixels per brick width
+            ("left", np.float64),  # x of the field's left edge
+            ("bottom", np.float64),  # y of the field's lower edge
+            ("header", np.int64),  # 1: there is a score line
+            # The pixels at which the lattice's cells begin: the nearest whole ones, so that no
+            # pixel belongs to two cells, and a brick is crisp.
+            ("columns", np.int64, (COLUMNS + 1,)),
+            ("rows", np.int64, (ROWS + 1,)),
+        ],
+    )
+)
+
+
+def make_view(height: int, width: int) -> Any:
+    """Return how the field lies in a picture: in the middle, as large as fits; `View` [1]."""
+    view = np.zeros(1, View)
+    record = view[0]
+    scale = min(height / FULL_HEIGHT, width / FULL_WIDTH)
+    record.header = scale >= HEADER_SCALE
+    shown = FULL_HEIGHT if record.header else FIELD_HEIGHT
+    scale = min(height / shown, width / FULL_WIDTH)
+    record.scale = scale
+    record.left = round((width - FIELD_WIDTH * scale) / 2)
+    record.bottom = round((height + shown * scale) / 2)
+    for column in range(COLUMNS + 1):
+        record.columns[column] = math.floor(record.left + column * scale + 0.5)
+    for row in range(ROWS + 1):
+        y = LATTICE_TOP - row * BRICK_HEIGHT
+        record.rows[row] = math.floor(record.bottom - y * scale + 0.5)
+    return view
+
+
+def place(view: Any, x: float, y: float) -> tuple[float, float]:
+    """Return the pixel coordinates of a point of the field."""
+    return float(view.left + x * view.scale), float(view.bottom - y * view.scale)

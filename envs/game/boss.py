@@ -1,0 +1,108 @@
+"""The boss: it takes many hits, and throws shards at the paddle that cost a life."""
+
+import math
+from typing import Any
+
+from ...physics.kernels import inlined, inner
+from ...physics.pairs.approach import approach_between, will_touch
+from ..rules import (
+    BOSS_POINTS,
+    BOSS_X,
+    BOSS_Y,
+    FIELD_WIDTH,
+    MAX_SHARDS,
+    PADDLE_Y,
+    SHARD_SPEED,
+    SHARD_TICKS,
+)
+from ..state import ABSENT, FLYING
+from .scoring import add_score, count_damage
+from .shapes import BOSS_SHAPE, SHARD_SHAPE
+
+# From where in the boss, below its middle, it throws.
+MOUTH = 1.0
+
+
+@inner
+def meet_boss(
+    rules: Any, shape: int, x: float, y: float, vx: float, vy: float, duration: float
+) -> tuple[float, float, float]:
+    """Return (time, normal_x, normal_y) of a moving shape's impact on the boss; inf if none."""
+    return approach_between(
+        rules.shapes, rules.edges, BOSS_SHAPE, shape, x - BOSS_X, y - BOSS_Y, vx, vy, duration
+    )
+
+
+@inner
+def hit_boss(world: Any) -> None:
+    """Hit the boss once; after the last hit it is gone, and with it what it has thrown."""
+    world.boss_hits -= 1
+    add_score(world, BOSS_POINTS)
+    count_damage(world)
+    if world.boss_hits == 0:
+        remove_shards(world)
+
+
+@inner
+def remove_shard(world: Any, shard: int) -> None:
+    """Take a shard away."""
+    world.shards -= world.shard_state[shard] != ABSENT
+    world.shard_state[shard] = ABSENT
+    world.shard_x[shard] = 0.0
+    world.shard_y[shard] = 0.0
+    world.shard_vx[shard] = 0.0
+    world.shard_vy[shard] = 0.0
+
+
+@inner
+def remove_shards(world: Any) -> None:
+    """Take all shards away; the boss waits before it throws again."""
+    for shard in range(MAX_SHARDS):
+        remove_shard(world, shard)
+    world.shard_wait = SHARD_TICKS
+
+
+@inlined
+def throw_shards(world: Any) -> None:
+    """Let the boss throw a shard at where the paddle is, now and then."""
+    world.shard_wait = max(0, world.shard_wait - 1)
+    if world.shard_wait > 0 or world.shards == MAX_SHARDS:
+        return
+    shard = 0
+    while world.shard_state[shard] != ABSENT:
+        shard += 1
+    x, y = world.paddle_x - BOSS_X, PADDLE_Y - (BOSS_Y - MOUTH)
+    part = SHARD_SPEED / math.sqrt(x * x + y * y)
+    world.shards += 1
+    world.shard_state[shard] = FLYING
+    world.shard_x[shard] = BOSS_X
+    world.shard_y[shard] = BOSS_Y - MOUTH
+    world.shard_vx[shard] = x * part
+    world.shard_vy[shard] = y * part
+    world.shard_wait = SHARD_TICKS
+
+
+@inlined
+def fly_shards(world: Any, rules: Any) -> bool:
+    """Move the shards by one tick; return whether one has landed on the moving paddle."""
+    landed = False
+    for shard in range(MAX_SHARDS):
+        if world.shard_state[shard] == ABSENT:
+            continue
+        landed = landed or will_touch(
+            rules.shapes,
+            rules.edges,
+            world.paddle_shape,
+            SHARD_SHAPE,
+            world.shard_x[shard] - world.paddle_x,
+            world.shard_y[shard] - PADDLE_Y,
+            world.shard_vx[shard] - world.paddle_vx,
+            world.shard_vy[shard],
+            1.0,
+        )
+        world.shard_x[shard] += world.shard_vx[shard]
+        world.shard_y[shard] += world.shard_vy[shard]
+        x = world.shard_x[shard]
+        if world.shard_y[shard] < 0.0 or x < 0.0 or x > FIELD_WIDTH:
+            remove_shard(world, shard)
+    return landed

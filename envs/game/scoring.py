@@ -1,0 +1,33 @@
+"""Points and lives."""
+
+from typing import Any
+
+from ...physics.kernels import inner
+from ..rules import EXTRA_LIFE_EVERY
+
+
+@inner
+def gain_lives(world: Any, lives: int) -> None:
+    """Add lives."""
+    world.lives += lives
+    world.lives_gained += lives
+
+
+@inner
+def add_score(world: Any, points: int) -> None:
+    """Add points, and a life for each threshold that they pass."""
+    world.score += points
+    if world.score >= world.next_life:
+        # No loop: LLVM turns one into a division of 128 bits, which Numba cannot link.
+        gained = 1 + (world.score - world.next_life) // EXTRA_LIFE_EVERY
+        gain_lives(world, gained)
+        world.next_life += gained * EXTRA_LIFE_EVERY
+
+
+@inner
+def count_damage(world: Any) -> None:
+    """Count one of the hits that clear the round."""
+    world.hits_left -= 1
+    world.idle = 0
+    if world.hits_left == 0:
+        world.cleared = 1

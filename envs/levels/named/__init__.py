@@ -1,0 +1,1 @@
+"""The named rounds, as text."""

@@ -1,0 +1,48 @@
+"""Random numbers by their place: a hash of a seed and a number, without any state.
+
+A level is made of such numbers rather than of a sequence, so that one that is not needed (a motif
+was asked for, say) changes none of the others. Products of 32-bit numbers fit 64 bits, so nothing
+overflows, and compiled and interpreted code give the same bits.
+"""
+
+import numpy as np
+
+from ...physics.kernels import kernel
+
+_LOW = np.uint64(0xFFFFFFFF)
+_HALF = np.uint64(32)
+# Wellons' "lowbias32" (hash-prospector, 2018): shifts and factors that spread every bit of the
+# input evenly over the output's.
+_SHIFT_A = np.uint64(16)
+_SHIFT_B = np.uint64(15)
+_FACTOR_A = np.uint64(0x7FEB352D)
+_FACTOR_B = np.uint64(0x846CA68B)
+_GOLDEN = np.uint64(0x9E3779B9)  # because the hash of 0 alone would be 0
+_UNIT = 1.0 / 4294967296.0
+
+
+@kernel
+def _mix(word: np.uint64) -> np.uint64:
+    """Return another 32-bit number, one to one, for a 32-bit number."""
+    word ^= word >> _SHIFT_A
+    word = (word * _FACTOR_A) & _LOW
+    word ^= word >> _SHIFT_B
+    word = (word * _FACTOR_B) & _LOW
+    return word ^ (word >> _SHIFT_A)
+
+
+@kernel
+def noise_key(seed: int) -> np.uint64:
+    """Return the key of a seed in [0, 2^63): different seeds have different keys."""
+    whole = np.uint64(seed)
+    low = _mix(((whole & _LOW) + _GOLDEN) & _LOW)
+    # Twice, for `noise` mixes the lower half, too, and at place 0 would cancel the same number.
+    high = _mix((_mix(low ^ (whole >> _HALF)) + _GOLDEN) & _LOW)
+    return (high << _HALF) | low
+
+
+@kernel
+def noise(key: np.uint64, place: int) -> float:
+    """Return the float64 in [0, 1) that a key has at a place, an integer >= 0."""
+    word = _mix((np.uint64(place) + (key & _LOW)) & _LOW)
+    return float(_mix(word ^ (key >> _HALF))) * _UNIT

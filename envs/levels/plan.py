@@ -1,0 +1,99 @@
+"""Which levels are played, and in which order: what the keyword `levels` stands for."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..rules import DIFFICULTY_AFTER_CAMPAIGN
+from ..state import Level
+from .files import CAMPAIGN, load_round
+from .generator import FIRST_TEST_SEED, MAX_SEED, TRAIN_SEEDS
+
+if TYPE_CHECKING:
+    from ..config import Config
+
+TEST_SEEDS = range(FIRST_TEST_SEED, FIRST_TEST_SEED + 10_000)
+_SEEDS = re.compile(r"seeds:(\d+)-(\d+)")
+
+
+@dataclass(frozen=True)
+class LevelPlan:
+    """The levels of a batch.
+
+    Attributes:
+        names: of the levels that are played first, in order, for finding one of them.
+        table: those levels, `Level` records [n]; never empty, but without names it is not played.
+        seeds: of the generated levels.
+        endless: whether generated levels follow when the table is through; it is played again
+            otherwise.
+        first_difficulty: of the first generated level, where difficulty rises.
+    """
+
+    names: tuple[str, ...]
+    table: Any
+    seeds: range
+    endless: bool
+    first_difficulty: float
+
+
+def plan_levels(config: "Config") -> LevelPlan:
+    """Return the levels of a validated configuration.
+
+    Raises:
+        ValueError: there is no such level, or it is malformed.
+    """
+    seeds = seed_range(config.levels)
+    if seeds is not None:
+        return LevelPlan((), np.zeros(1, Level), seeds, True, 0.0)
+    if config.levels == "campaign":
+        rounds = CAMPAIGN if config.enemies else CAMPAIGN[:-1]  # without enemies there is no boss
+        return LevelPlan(rounds, level_table(rounds), TRAIN_SEEDS, True, DIFFICULTY_AFTER_CAMPAIGN)
+    names = (config.levels,) if isinstance(config.levels, str) else tuple(map(str, config.levels))
+    table = level_table(names)
+    for name in names:
+        check_boss(config, name)
+    return LevelPlan(names, table, TRAIN_SEEDS, False, 0.0)
+
+
+def check_boss(config: "Config", name: str) -> None:
+    """Refuse a level with the boss where there are no enemies, with a ValueError."""
+    if load_round(name).boss and not config.enemies:
+        raise ValueError(f"level {name!r} has the boss, who can't come with enemies=False")
+
+
+def seed_range(levels: str | range | Sequence[str]) -> range | None:
+    """Return the seeds that `levels` names; None if it names levels.
+
+    Raises:
+        ValueError: the range is empty, or has a step, or there are no such seeds.
+    """
+    if isinstance(levels, str):
+        if levels in ("train", "test"):
+            return TRAIN_SEEDS if levels == "train" else TEST_SEEDS
+        if not levels.startswith("seeds:"):
+            return None
+        match = _SEEDS.fullmatch(levels)
+        if match is None:
+            raise ValueError(f"levels must be like 'seeds:100-200' (both included); got {levels!r}")
+        levels = range(int(match[1]), int(match[2]) + 1)
+    if not isinstance(levels, range):
+        return None
+    if not levels or levels.step != 1 or levels.start < 0 or levels.stop - 1 > MAX_SEED:
+        raise ValueError(
+            f"levels must be a range of seeds from 0 to {MAX_SEED}, not empty and with step 1; "
+            f"got {levels!r}"
+        )
+    return levels
+
+
+def level_table(names: Sequence[str]) -> Any:
+    """Return levels, by their names or paths, as an array of `Level` records."""
+    table = np.zeros(len(names), Level)
+    for record, name in zip(table, names, strict=True):
+        level = load_round(name)
+        record["kind"] = level.kinds.ravel()
+        record["boss"] = level.boss
+    return table

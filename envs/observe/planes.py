@@ -1,0 +1,355 @@
+"""The `grid` observation: planes over the field's cells, float32 [planes, 28, 11] in [-1, 1].
+
+A cell is as large as a brick, 1 by 1/2. Row 0 lies under the ceiling, the lattice of bricks is rows
+2 to 19, and the paddle is in row 24.
+
+What moves is not rounded to a cell: its weight of 1 is shared among the four cells whose middles
+lie around it, the more to the nearer ones, and so it is seen where between them it is. Its motion
+is its velocity, shared likewise: no earlier observation is needed. Where things share a cell their
+numbers are added, within -1 and 1. They are floats because velocities have a sign, and because a
+network takes them as they are. Games without capsules and enemies have no planes for them.
+"""
+
+from copy import copy
+from functools import partial
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from ...physics.kernels import inlined, kernel
+from ..config import Config
+from ..game.shapes import BOSS_SHAPE
+from ..rules import (
+    BEAM_TICKS,
+    BOSS_HITS,
+    BOSS_X,
+    BOSS_Y,
+    BRICK_HEIGHT,
+    CAPSULES,
+    CATCH_TICKS,
+    CELLS,
+    COLUMNS,
+    DIVE_SPEED,
+    ENEMY_TICKS_MAX,
+    FIELD_HEIGHT,
+    GATE_TICKS,
+    GATE_X,
+    IDLE_TICKS,
+    LATTICE_TOP,
+    MAX_BALLS,
+    MAX_BEAMS,
+    MAX_ENEMIES,
+    MAX_SHARDS,
+    NO_CAPSULE,
+    PADDLE_TOP,
+    POWERS,
+    SHARD_SPEED,
+    SHARD_TICKS,
+    SPEED_STAGE_MAX,
+    UNBREAKABLE,
+)
+from ..state import ABSENT, HELD
+from .layout import slices
+from .protocol import Observe
+
+GRID_ROWS = int(FIELD_HEIGHT / BRICK_HEIGHT)
+PLANE = GRID_ROWS * COLUMNS  # numbers
+_PADDLE_ROW = int((FIELD_HEIGHT - PADDLE_TOP) / BRICK_HEIGHT)
+_LATTICE = int((FIELD_HEIGHT - LATTICE_TOP) / BRICK_HEIGHT) * COLUMNS  # its first cell in a plane
+
+_CORE = slices(
+    {
+        "brick": 1,  # 1: one that can be broken
+        "hits_left": 1,  # of it / 8, at most 1
+        "gold": 1,
+        "status": 1,  # row by row the numbers of `STATUS`, each in all of its row
+        "paddle": 1,  # the covered part of the cell's width
+        "paddle_motion": 1,  # to the right; 1: its speed
+        "ball": 1,
+        "ball_motion": 2,  # to the right, up; 1: the fastest stage's speed
+        "ball_held": 1,  # that lies on the paddle: 0, when it leaves by itself, to 1
+    },
+    0,
+)
+CORE_PLANES = _CORE["ball_held"].stop
+_EXTRAS = slices(
+    {
+        "capsule": 1,
+        "beam": 1,
+        "exit": 1,  # the gate in the right wall, if it is open
+        "gate": 1,  # in the ceiling: an enemy is about to come in
+        "enemy": 1,
+        "enemy_motion": 2,  # 1: the speed of a dive
+        "boss": 1,  # the covered part of the cell (by its bounding box) * hits it still takes / 16
+        "shard": 1,
+        "shard_motion": 2,  # 1: its speed
+    },
+    CORE_PLANES,
+)
+FULL_PLANES = _EXTRAS["shard_motion"].stop
+
+_STATUS = (
+    *("speed_stage", "idle_clock", "decision_clock", "lives"),
+    # Only in games with capsules or enemies: the power that one has, the capsule that falls, ...
+    *("catch", "enlarge", "laser"),
+    *("capsule_catch", "capsule_enlarge", "capsule_laser", "capsule_slow", "capsule_disrupt"),
+    *("capsule_break", "capsule_player"),
+    *("beam_wait", "enemy_wait", "shard_wait"),
+)
+# The row of each number in the plane `status`. They are scaled as in the `vector` observation.
+STATUS = {name: row for row, name in enumerate(_STATUS)}
+
+_BRICK = _CORE["brick"].start * PLANE
+_HITS_LEFT = _CORE["hits_left"].start * PLANE
+_GOLD = _CORE["gold"].start * PLANE
+_STATUS_PLANE = _CORE["status"].start * PLANE
+_PADDLE = _CORE["paddle"].start * PLANE
+_PADDLE_MOTION = _CORE["paddle_motion"].start * PLANE
+_BALL = _CORE["ball"].start * PLANE
+_BALL_MOTION = _CORE["ball_motion"].start * PLANE
+_BALL_HELD = _CORE["ball_held"].start * PLANE
+_CAPSULE = _EXTRAS["capsule"].start * PLANE
+_BEAM = _EXTRAS["beam"].start * PLANE
+_EXIT = _EXTRAS["exit"].start * PLANE
+_GATE = _EXTRAS["gate"].start * PLANE
+_ENEMY = _EXTRAS["enemy"].start * PLANE
+_ENEMY_MOTION = _EXTRAS["enemy_motion"].start * PLANE
+_BOSS = _EXTRAS["boss"].start * PLANE
+_SHARD = _EXTRAS["shard"].start * PLANE
+_SHARD_MOTION = _EXTRAS["shard_motion"].start * PLANE
+
+# The planes of what moves begin here. Nearly all of their cells are empty: those that are not are
+# remembered, and erased before the next observation. There are never more than these: a paddle in
+# two planes; balls, enemies and shards in three or four, capsule, beams and gates in one plane, in
+# four cells each; and 30 cells of the boss.
+_MOVING = _PADDLE
+MAX_MARKS = 256
+
+
+class GridObserver:
+    """`Observer` of grids, float32 [n, planes, 28, 11]."""
+
+    def __init__(self, config: Config, num_worlds: int) -> None:
+        """Make the arrays; games without capsules and enemies have no planes for them."""
+        full = config.capsules or config.enemies
+        shape = (FULL_PLANES if full else CORE_PLANES, GRID_ROWS, COLUMNS)
+        self.layout = _CORE | _EXTRAS if full else dict(_CORE)
+        # Whether Box is generic depends on Gymnasium's version.
+        self.space: Any = spaces.Box(-1.0, 1.0, shape, np.float32)
+        self.observations: NDArray[np.float32] = np.zeros((num_worlds, *shape), np.float32)
+        self._rows = self.observations.reshape(num_worlds, -1)
+        self._marks = np.zeros((num_worlds, 1 + MAX_MARKS), np.int32)
+
+    def advance(self) -> None:
+        """Do nothing: a grid shows the present only."""
+
+    def recall(self, observations: NDArray[Any]) -> None:
+        """Go on from these grids; the worlds know what of the bricks is up to date."""
+        self.observations[:] = observations
+        find_marks(self._rows, self._marks)
+
+    def clone(self) -> "GridObserver":
+        """Return one that shows the same in arrays of its own."""
+        clone = copy(self)
+        clone.observations = self.observations.copy()
+        clone._rows = clone.observations.reshape(self._rows.shape)
+        clone._marks = self._marks.copy()
+        return clone
+
+    def part(self, worlds: Any, rules: Any, share: slice) -> Observe:
+        """Return what observes a share of the worlds."""
+        return partial(observe_grids, worlds[share], rules, self._rows[share], self._marks[share])
+
+
+@kernel
+def observe_grids(worlds: Any, rules: Any, rows: Any, marks: Any, mask: Any) -> None:
+    """Observe the worlds of a mask.
+
+    Args:
+        rows: float32 [n, planes * PLANE].
+        marks: int32 [n, 1 + MAX_MARKS], the number of places to be erased, and these.
+    """
+    for index in range(worlds.shape[0]):
+        if mask[index]:
+            observe_grid(worlds[index], rules[0], rows[index], marks[index])
+
+
+@kernel
+def find_marks(rows: Any, marks: Any) -> None:
+    """Find the places to be erased in grids that were observed elsewhere."""
+    for index in range(rows.shape[0]):
+        marks[index, 0] = 0
+        for place in range(_MOVING, rows.shape[1]):
+            if rows[index, place] != 0.0:
+                _put(rows[index], marks[index], place, 0.0)
+
+
+@kernel
+def observe_grid(world: Any, rules: Any, row: Any, marks: Any) -> None:
+    """Write a world's observation into a float32 row; the bricks only if they have changed."""
+    for index in range(marks[0]):
+        row[marks[1 + index]] = 0.0
+    marks[0] = 0
+    if world.lattice_changed == 1:
+        world.lattice_changed = 0
+        _write_bricks(world, rules, row)
+    full = row.shape[0] > CORE_PLANES * PLANE
+    _write_status(world, rules, row, full)
+    _mark_paddle(world, rules, row, marks)
+    _mark_balls(world, rules, row, marks)
+    if full:
+        _mark_capsules(world, row, marks)
+        _mark_enemies(world, row, marks)
+        if world.boss_hits > 0:
+            _mark_boss(world, rules, row, marks)
+
+
+@inlined
+def _write_bricks(world: Any, rules: Any, row: Any) -> None:
+    """Write the planes of the bricks."""
+    for cell in range(CELLS):
+        hits = world.brick_hits[cell]
+        place = _LATTICE + cell
+        breaks = hits > 0 and hits != UNBREAKABLE
+        row[_BRICK + place] = 1.0 if breaks else 0.0
+        row[_HITS_LEFT + place] = rules.brick_values[hits] if breaks else 0.0
+        row[_GOLD + place] = 1.0 if hits == UNBREAKABLE else 0.0
+
+
+@inlined
+def _write_status(world: Any, rules: Any, row: Any, full: bool) -> None:
+    """Write the numbers that have no place in the field."""
+    _write_number(row, 0, world.speed_stage * (1.0 / SPEED_STAGE_MAX))
+    _write_number(row, 1, min(1.0, world.idle * (1.0 / IDLE_TICKS)))
+    _write_number(row, 2, world.decisions / rules.max_decisions)
+    _write_number(row, 3, 1.0 / max(1, world.lives))
+    if not full:
+        return
+    place = 4
+    for power in range(POWERS):
+        _write_number(row, place + power, 1.0 if world.power == power + 1 else 0.0)
+    place += POWERS
+    for kind in range(CAPSULES):
+        _write_number(row, place + kind, 1.0 if world.capsule == kind + 1 else 0.0)
+    place += CAPSULES
+    boss = world.boss_hits > 0
+    _write_number(row, place, world.beam_wait * (1.0 / BEAM_TICKS))
+    _write_number(row, place + 1, 0.0 if boss else world.enemy_wait * (1.0 / ENEMY_TICKS_MAX))
+    _write_number(row, place + 2, world.shard_wait * (1.0 / SHARD_TICKS) if boss else 0.0)
+
+
+@kernel
+def _write_number(row: Any, number: int, value: float) -> None:
+    """Write a number into all its row of the plane for them, if it has changed."""
+    first = _STATUS_PLANE + number * COLUMNS
+    if row[first] != np.float32(value):
+        for place in range(first, first + COLUMNS):
+            row[place] = value
+
+
+@inlined
+def _mark_paddle(world: Any, rules: Any, row: Any, marks: Any) -> None:
+    """Mark the paddle and its motion, by the part of each cell's width that it covers."""
+    left, right = world.paddle_x - world.paddle_half, world.paddle_x + world.paddle_half
+    speed = world.paddle_vx / rules.paddle_speed
+    for column in range(max(0, int(left)), min(COLUMNS, int(right) + 1)):
+        part = min(right, column + 1.0) - max(left, float(column))
+        place = _PADDLE_ROW * COLUMNS + column
+        _put(row, marks, _PADDLE + place, part)
+        _put(row, marks, _PADDLE_MOTION + place, part * speed)
+
+
+@inlined
+def _mark_balls(world: Any, rules: Any, row: Any, marks: Any) -> None:
+    """Mark the balls, their motion, and how long they are held."""
+    fastest = rules.ball_speed * (1.0 + 0.25 * SPEED_STAGE_MAX)
+    for ball in range(MAX_BALLS):
+        state = world.ball_state[ball]
+        if state == ABSENT:
+            continue
+        x, y = world.ball_x[ball], world.ball_y[ball]
+        _share(row, marks, _BALL, x, y, 1.0)
+        if state == HELD:
+            _share(row, marks, _BALL_HELD, x, y, world.ball_release[ball] * (1.0 / CATCH_TICKS))
+        _share(row, marks, _BALL_MOTION, x, y, world.ball_vx[ball] / fastest)
+        _share(row, marks, _BALL_MOTION + PLANE, x, y, world.ball_vy[ball] / fastest)
+
+
+@inlined
+def _mark_capsules(world: Any, row: Any, marks: Any) -> None:
+    """Mark the falling capsule, the beams, and the open gate in the right wall."""
+    if world.capsule != NO_CAPSULE:
+        _share(row, marks, _CAPSULE, world.capsule_x, world.capsule_y, 1.0)
+    if world.beams > 0:
+        for beam in range(MAX_BEAMS):
+            if world.beam_state[beam] != ABSENT:
+                _share(row, marks, _BEAM, world.beam_x[beam], world.beam_y[beam], 1.0)
+    if world.exit_open == 1:
+        _put(row, marks, _EXIT + (_PADDLE_ROW + 1) * COLUMNS - 1, 1.0)
+
+
+@inlined
+def _mark_enemies(world: Any, row: Any, marks: Any) -> None:
+    """Mark enemies and shards, their motions, and the gate that opens."""
+    if world.boss_hits == 0 and 0 < world.enemy_wait < GATE_TICKS:
+        _share(row, marks, _GATE, GATE_X[world.enemy_gate], FIELD_HEIGHT, 1.0)
+    if world.enemies > 0:
+        for enemy in range(MAX_ENEMIES):
+            if world.enemy_state[enemy] != ABSENT:
+                x, y = world.enemy_x[enemy], world.enemy_y[enemy]
+                vx, vy = world.enemy_vx[enemy], world.enemy_vy[enemy]
+                _share(row, marks, _ENEMY, x, y, 1.0)
+                _share(row, marks, _ENEMY_MOTION, x, y, vx * (1.0 / DIVE_SPEED))
+                _share(row, marks, _ENEMY_MOTION + PLANE, x, y, vy * (1.0 / DIVE_SPEED))
+    if world.shards > 0:
+        for shard in range(MAX_SHARDS):
+            if world.shard_state[shard] != ABSENT:
+                x, y = world.shard_x[shard], world.shard_y[shard]
+                vx, vy = world.shard_vx[shard], world.shard_vy[shard]
+                _share(row, marks, _SHARD, x, y, 1.0)
+                _share(row, marks, _SHARD_MOTION, x, y, vx * (1.0 / SHARD_SPEED))
+                _share(row, marks, _SHARD_MOTION + PLANE, x, y, vy * (1.0 / SHARD_SPEED))
+
+
+@inlined
+def _mark_boss(world: Any, rules: Any, row: Any, marks: Any) -> None:
+    """Mark the boss by the part of each cell that it covers, and by the hits that it takes."""
+    shape = rules.shapes[BOSS_SHAPE]
+    left, right = BOSS_X + shape.lower_x, BOSS_X + shape.upper_x
+    # In rows from the ceiling down.
+    top = (FIELD_HEIGHT - BOSS_Y - shape.upper_y) * (1.0 / BRICK_HEIGHT)
+    bottom = (FIELD_HEIGHT - BOSS_Y - shape.lower_y) * (1.0 / BRICK_HEIGHT)
+    value = world.boss_hits * (1.0 / BOSS_HITS)
+    for line in range(int(top), int(bottom) + 1):
+        height = min(bottom, line + 1.0) - max(top, float(line))
+        for column in range(int(left), int(right) + 1):
+            width = min(right, column + 1.0) - max(left, float(column))
+            _put(row, marks, _BOSS + line * COLUMNS + column, value * height * width)
+
+
+@kernel
+def _share(row: Any, marks: Any, plane: int, x: float, y: float, value: float) -> None:
+    """Share a value among the four cells of a plane whose middles lie around a point."""
+    if value == 0.0:
+        return
+    # In cells, from the middle of the upper left one; what is outside is on the edge.
+    across = min(max(x - 0.5, 0.0), COLUMNS - 1.0)
+    down = min(max((FIELD_HEIGHT - y) * (1.0 / BRICK_HEIGHT) - 0.5, 0.0), GRID_ROWS - 1.0)
+    column = min(int(across), COLUMNS - 2)
+    line = min(int(down), GRID_ROWS - 2)
+    right, lower = across - column, down - line
+    place = plane + line * COLUMNS + column
+    _put(row, marks, place, value * (1.0 - right) * (1.0 - lower))
+    _put(row, marks, place + 1, value * right * (1.0 - lower))
+    _put(row, marks, place + COLUMNS, value * (1.0 - right) * lower)
+    _put(row, marks, place + COLUMNS + 1, value * right * lower)
+
+
+@kernel
+def _put(row: Any, marks: Any, place: int, value: float) -> None:
+    """Add a value to what is at a place, within -1 and 1, and remember that it must be erased."""
+    row[place] = min(1.0, max(-1.0, row[place] + value))
+    marks[1 + marks[0]] = place
+    marks[0] += 1

@@ -1,0 +1,99 @@
+"""A recorded game to look at, with pauses. No window is needed for it."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..batch.batch import Batch
+from ..batch.playback import replay_states
+from ..batch.replays import Replay
+from ..draw.overlay import draw_overlay
+from ..draw.picture import draw_world
+from .controls import Key
+
+# More pictures a second than this are not shown: of a fast show some are left out.
+MOST_PICTURES = 60
+
+
+class Viewer:
+    """Plays a recorded game again, and checks on the way that it is the same.
+
+    Args:
+        replay: the game.
+        speed: how many times as fast as it was played.
+        height: of the pictures, in pixels.
+
+    Attributes:
+        frames_per_second: pictures a second that give this speed.
+        paused: whether a pause is on.
+        ended: whether the user has asked to leave.
+
+    Raises:
+        ReplayDivergedError: here and in `tick`, the game took another course when it was recorded.
+    """
+
+    def __init__(self, replay: Replay, speed: float, height: int) -> None:
+        rate = replay.frames_per_second * speed
+        self._stride = max(1, math.ceil(rate / MOST_PICTURES))
+        self.frames_per_second = rate / self._stride
+        self.paused = False
+        self.ended = False
+        self._over = False
+        self._replay = replay
+        self._height = height
+        self._states: Iterator[Batch]
+        self._batch: Batch
+        self._begin()
+
+    def press(self, key: Key) -> None:
+        """Do what a key asks for: pause or go on, begin again, leave."""
+        if key is Key.QUIT:
+            self.ended = True
+        elif key is Key.RESTART:
+            self._begin()
+        elif key in (Key.PAUSE, Key.FIRE):
+            if self._over:
+                self._begin()
+            else:
+                self.paused = not self.paused
+
+    def release(self, key: Key) -> None:
+        """Keys that go up mean nothing here."""
+
+    def point(self, x: float) -> None:
+        """The mouse's place means nothing here."""
+
+    def leave(self) -> None:
+        """The show goes on when nobody looks."""
+
+    def tick(self) -> None:
+        """Go on by one picture, if no pause is on."""
+        for _ in range(0 if self.paused or self._over else self._stride):
+            state = next(self._states, None)
+            if state is None:
+                self._over = True
+                break
+            self._batch = state
+
+    def picture(self) -> NDArray[np.uint8]:
+        """Return what is to be seen now, uint8 [height, width, 3]."""
+        picture = draw_world(self._batch.worlds, self._batch.rules, 0, self._height)
+        draw_overlay(picture, *self.text())
+        return picture
+
+    def text(self) -> tuple[str, tuple[str, ...]]:
+        """Return the title and the lines that are shown over the picture, if any."""
+        if self._over:
+            result = self._replay.result
+            score = f"SCORE {result.score}   ROUND {result.round}"
+            return "THE END", (score, "", "SPACE: AGAIN   ESC: QUIT")
+        if self.paused:
+            return "PAUSED", ("SPACE: GO ON   R: FROM THE START", "F: FULL SCREEN   ESC: QUIT")
+        return "", ()
+
+    def _begin(self) -> None:
+        self._states = replay_states(self._replay)
+        self._batch = next(self._states)
+        self.paused = self._over = False

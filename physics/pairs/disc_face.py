@@ -1,0 +1,44 @@
+"""Disc against one face of a convex region: the flat first, then the corner beyond its end."""
+
+import math
+
+from ..kernels import kernel
+from ..shapes.vectors import cross
+from .disc_disc import sweep_point_disc
+
+
+@kernel
+def sweep_disc_face(
+    radius: float, height: float, low: float, high: float, speed: float, slide: float
+) -> tuple[float, float, float]:
+    """Return (time, normal_across, normal_along) at which a disc about 0 meets a face, or inf.
+
+    The face lies across the first axis at ``height``, spans ``low`` to ``high`` along the second
+    one (infinite where it is open) and flies with (speed, slide). It must be the face whose line
+    the disc meets last (height >= radius, speed < 0): then the disc meets the flat, or a corner, or
+    nothing. Or the disc is within reach of all lines, beyond a corner of this face.
+    """
+    # How far beyond the ends the disc meets the line, times the speed. No division, so that this
+    # is right for flights almost along the face, too, and agrees with the corners' own test.
+    reach = radius * slide
+    is_near = height < radius
+    corner = low
+    is_flat = True
+    passing = 0.0
+    if low > -math.inf:
+        passing = cross(height, low, speed, slide)
+        is_flat = low <= 0.0 if is_near else passing <= reach
+    if is_flat and high < math.inf:
+        corner = high
+        passing = cross(height, high, speed, slide)
+        is_flat = high >= 0.0 if is_near else passing >= reach
+    if is_flat:
+        return (height - radius) / -speed, 1.0, 0.0
+    time, across, along = sweep_point_disc(radius, height, corner, speed, slide)
+    closing = -(height * speed + corner * slide)
+    if time == math.inf and closing > 0.0 and speed < 0.0 and abs(passing) < abs(reach):
+        # It comes abreast of the corner within a radius of it, so that it cannot miss: rounding
+        # did, in a flight nearly parallel to the face, and the disc would sink in behind the
+        # corner. It meets it as good as at its closest, on the flat.
+        return closing / (speed * speed + slide * slide), 1.0, 0.0
+    return time, across, along

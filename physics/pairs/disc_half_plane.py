@@ -1,0 +1,45 @@
+"""Disc against half-plane: one signed distance."""
+
+import math
+
+from ..kernels import kernel
+
+
+@kernel
+def contact_disc_half_plane(
+    radius: float, normal_x: float, normal_y: float, offset: float, dx: float, dy: float
+) -> tuple[bool, float, float, float, float, float]:
+    """Return (found, normal_x, normal_y, depth, point_x, point_y).
+
+    The half-plane is normal . p <= offset about its body, which is at (dx, dy) from the disc.
+    """
+    depth = radius + (offset + (normal_x * dx + normal_y * dy))
+    if depth <= 0.0:
+        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+    middle = radius - 0.5 * depth
+    return True, -normal_x, -normal_y, depth, -normal_x * middle, -normal_y * middle
+
+
+@kernel
+def sweep_disc_half_plane(
+    radius: float,
+    normal_x: float,
+    normal_y: float,
+    offset: float,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    duration: float,
+) -> tuple[float, float, float]:
+    """Return (time, normal_x, normal_y); the half-plane's body flies with (vx, vy)."""
+    depth = radius + (offset + (normal_x * dx + normal_y * dy))
+    if depth > 0.0:
+        return 0.0, -normal_x, -normal_y
+    approach = normal_x * vx + normal_y * vy
+    if approach <= 0.0:
+        return math.inf, 0.0, 0.0
+    time = (0.0 - depth) / approach
+    if time > duration:
+        return math.inf, 0.0, 0.0
+    return time, -normal_x, -normal_y

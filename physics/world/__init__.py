@@ -1,0 +1,1 @@
+"""Many bodies, stepped from impact to impact: `World` and `WorldBatch`."""

@@ -1,0 +1,180 @@
+"""What every moving body does next, if nothing interferes: the heart of the event-driven step.
+
+Each body has one plan, its earliest event (Lubachevsky, How to simulate billiards and similar
+systems, J. Comput. Phys. 94, 1991). Plans hold until one of the two bodies changes its course.
+"""
+
+import math
+from typing import Any
+
+from ..kernels import kernel
+from ..pairs.table import impact_between, may_touch
+from ..tolerances import NO_APPROACH, SAME_PLACE
+from .clock_time import elapsed, later
+from .grid import find_near, time_to_cross
+from .memory import (
+    edges_of,
+    header_of,
+    inside_of,
+    motions_of,
+    moving_of,
+    near_of,
+    plans_of,
+    progress_of,
+    shapes_of,
+    stale_of,
+    traits_of,
+    winners_of,
+)
+from .records import CROSS_X, CROSS_Y, MEET, NOTHING
+from .tournament import replay
+
+
+@kernel
+def rests(world: Any, slot: int) -> bool:
+    """Tell whether a body has used up its hits of this step, and stays where it is."""
+    return bool(slot >= 0 and plans_of(world)[slot].hits >= header_of(world).max_hits)
+
+
+@kernel
+def place(world: Any, body: int, now: float, now_low: float) -> tuple[float, float, float, float]:
+    """Return (x, y, vx, vy) of a body at a time of the step."""
+    trait = traits_of(world)[body]
+    if trait.slot < 0:
+        return trait.home_x, trait.home_y, 0.0, 0.0
+    motion = motions_of(world)[trait.slot]
+    plan = plans_of(world)[trait.slot]
+    since = 0.0 if rests(world, trait.slot) else elapsed(now, now_low, plan.at, plan.at_low)
+    return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
+
+
+@kernel
+def is_inside(world: Any, one: Any, a: int, other: Any, b: int) -> bool:
+    """Tell whether one of two bodies (with their traits) is a sensor and has noticed the other."""
+    bodies = traits_of(world).shape[0]
+    if one.sensor >= 0:
+        return bool(inside_of(world)[one.sensor * bodies + b])
+    if other.sensor >= 0:
+        return bool(inside_of(world)[other.sensor * bodies + a])
+    return False
+
+
+@kernel
+def _approaches(vx: float, vy: float, normal_x: float, normal_y: float, speed: float) -> bool:
+    """Tell whether what touches or overlaps, perhaps by rounding only, is to bounce.
+
+    The velocity is the other one's relative to the body from which the normal points. The speed is
+    that of both together, on which the rounding of this velocity depends.
+    """
+    return bool(-(vx * normal_x + vy * normal_y) > NO_APPROACH * speed)
+
+
+@kernel
+def skewness(shape: Any, edges: Any, x: float, y: float) -> float:
+    """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
+    least = 1.0
+    for index in range(shape.first, shape.first + shape.count):
+        edge = edges[index]
+        least = min(least, abs(edge.normal_x * y - edge.normal_y * x))
+    return least
+
+
+@kernel
+def predict(world: Any, slot: int, now: float, now_low: float, only_later: bool) -> None:
+    """Make a body's plan anew: the first event that comes, from now on.
+
+    Args:
+        only_later: consider only the bodies of later slots (whose plans then need not consider this
+            one).
+    """
+    plan = plans_of(world)[slot]
+    plan.kind = NOTHING
+    plan.time = math.inf
+    plan.time_low = 0.0
+    if not rests(world, slot):
+        _find_event(world, slot, now, now_low, only_later)
+    replay(winners_of(world), plans_of(world), slot)
+
+
+@kernel
+def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: bool) -> None:
+    """Set a body's plan to its first event, if there is one."""
+    shapes = shapes_of(world)
+    edges = edges_of(world)
+    traits = traits_of(world)
+    near = near_of(world)
+    plan = plans_of(world)[slot]
+    body = moving_of(world)[slot]
+    own = traits[body]
+    x, y, vx, vy = place(world, body, now, now_low)
+    best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
+    for index in range(find_near(world, slot, only_later)):
+        other = near[index]
+        trait = traits[other]
+        their_x, their_y, their_vx, their_vy = place(world, other, now, now_low)
+        dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
+        slack = 0.0
+        if trait.slot < 0 and ux * ux + uy * uy > 0.0:
+            places = abs(x) + abs(y) + abs(dx) + abs(dy)
+            slack = SAME_PLACE * places / math.sqrt(ux * ux + uy * uy)
+        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
+            continue
+        if rests(world, trait.slot) or is_inside(world, own, body, trait, other):
+            continue
+        time, normal_x, normal_y = impact_between(
+            shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, best + slack
+        )
+        if time == math.inf:
+            continue
+        if time == 0.0 and own.sensor < 0 and trait.sensor < 0:
+            progress_of(world).touching = 1
+            speed = abs(vx) + abs(vy) + abs(their_vx) + abs(their_vy)
+            if not _approaches(ux, uy, normal_x, normal_y, speed):
+                continue
+        if plan.kind == MEET and abs(time - best) <= slack:
+            # Both at once, as far as numbers can tell. Where the disc comes down on the seam of two
+            # boxes, a face is met and not the other box's corner.
+            rank = skewness(shapes[trait.collider], edges, normal_x, normal_y)
+            partner = shapes[traits[plan.partner].collider]
+            best_rank = skewness(partner, edges, plan.normal_x, plan.normal_y)
+            is_first = rank < best_rank or (rank == best_rank and other < plan.partner)
+        else:
+            # What meets comes before what crosses; of two that meet, the order of the bodies
+            # decides, not that of the grid.
+            is_first = time < best or plan.kind != MEET or other < plan.partner
+        if is_first:
+            best = time
+            plan.kind = MEET
+            plan.partner = other
+            plan.normal_x = normal_x
+            plan.normal_y = normal_y
+    if plan.kind != NOTHING:
+        plan.time, plan.time_low = later(now, now_low, best)
+
+
+@kernel
+def _find_crossing(world: Any, plan: Any, x: float, y: float, vx: float, vy: float) -> float:
+    """Plan to leave the cell, if the body will; return in how long."""
+    header = header_of(world)
+    time_x = time_to_cross(x, vx, header.left, header.cell, plan.column, header.columns)
+    time_y = time_to_cross(y, vy, header.bottom, header.cell, plan.row, header.rows)
+    time = min(time_x, time_y)
+    if time < math.inf:
+        plan.kind = CROSS_X if time_x <= time_y else CROSS_Y
+    return time
+
+
+@kernel
+def find_stale(world: Any, slot: int, count: int) -> int:
+    """Append to ``stale`` whoever planned to meet a body, which changed its course."""
+    body = moving_of(world)[slot]
+    for index in range(find_near(world, slot, False)):
+        other = traits_of(world)[near_of(world)[index]].slot
+        if other < 0:
+            continue
+        plan = plans_of(world)[other]
+        if plan.kind == MEET and plan.partner == body:
+            plan.kind = NOTHING
+            stale_of(world)[count] = other
+            count += 1
+    return count
