@@ -1,29 +1,19 @@
 """What can be said of RLlib without it. The rest is `make ray`, in an environment of its own."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-SCRIPT = ROOT / "tests" / "cluster" / "run.py"
+from helpers.processes import run_python
+from helpers.repository import ROOT, TESTS
 
-
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, str(SCRIPT), *arguments], capture_output=True, text=True, timeout=120
-    )
+SCRIPT = TESTS / "cluster" / "run.py"
 
 
 def test_help_needs_no_ray() -> None:
-    done = run("--help")
-    assert done.returncode == 0, done.stderr
-    assert "episodes, training, nodes, scaling" in done.stdout
+    assert "episodes, training, nodes, scaling" in run_python(SCRIPT, "--help").stdout
 
 
 def test_an_unknown_part_is_refused_before_anything_runs() -> None:
-    done = run("episodes", "scalling")
-    assert done.returncode == 2
+    done = run_python(SCRIPT, "episodes", "scalling", status=2)
     assert "no part 'scalling'; there are episodes, training, nodes, scaling" in done.stderr
 
 

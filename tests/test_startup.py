@@ -1,8 +1,8 @@
-"""Whoever starts a program a second time does not wait for the compiler."""
+"""A program that starts a second time does not wait for the compiler."""
 
 import json
-import subprocess
-import sys
+
+from helpers.processes import run_program
 
 PROGRAM = """
 import json, sys
@@ -28,16 +28,12 @@ print(json.dumps([str(e.data["dispatcher"].py_func) for _, e in recorder.buffer 
 
 
 def compiled_functions() -> list[str]:
-    """Run the program in a new process, warnings being errors; return what it compiled."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", PROGRAM], capture_output=True, text=True, timeout=300
-    )
-    assert done.returncode == 0, done.stderr
-    functions: list[str] = json.loads(done.stdout)
+    """Return the names of the functions that the program compiles."""
+    functions: list[str] = json.loads(run_program(PROGRAM).stdout)
     return functions
 
 
 def test_a_second_start_compiles_nothing() -> None:
-    """Also: no kernel is such that Numba cannot cache it, of which it would warn."""
+    """Numba can cache every kernel, too: otherwise it warns, and a warning is an error."""
     compiled_functions()
     assert compiled_functions() == []

@@ -1,0 +1,1 @@
+"""Code that several tests use: `from helpers.processes import run_program`."""
