@@ -1,41 +1,41 @@
-# Every target works alone on a fresh machine: it makes .venv and installs what it needs, first.
+# Every target works on a fresh machine: it makes .venv first, and installs what it needs.
 # Another interpreter or place:  make PYTHON=python3.12 VENV=/tmp/arkanoid train
 
 VENV ?= .venv
 BIN = $(VENV)/bin
-RAY_VENV ?= build/ray
-# (Refused in a variable's value: there another make reads over it, and on to its own message.)
-COLON = :
-CHECKED := $(if $(filter-out 1,$(words $(VENV))$(findstring $(COLON),$(VENV))),\
-	$(error VENV must be a path without spaces and colons, but is '$(VENV)'))
 # The first Python that is new enough.
 PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11 python; do \
 	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done)
-# An environment that was interrupted while it was made, or is another tool's, may lack pip.
-INSTALL = $(BIN)/python -c 'import pip' 2>/dev/null || $(BIN)/python -m ensurepip; \
-	$(BIN)/python -m pip install --constraint constraints.txt --editable
+INSTALL = $(BIN)/python -m pip install --constraint constraints.txt --editable
+NOX = $(BIN)/python -m nox --noxfile tests/noxfile.py --session
 # What decides which packages are installed, and what an editable install remembers.
 REQUIREMENTS = pyproject.toml constraints.txt version.py
 
 .DEFAULT_GOAL = help
-.PHONY: help train test lint types format docs check distcheck bench compat ray clean
+.PHONY: help train test lint types format docs check distcheck bench compat ray lock clean
 
 help:  ## Show the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
 
-train: $(VENV)/train  ## Train an agent for about two minutes, and show how it does
+train: $(VENV)/train  ## Train an agent for about two minutes, and show how well it plays
 	$(BIN)/arkanoid train quick
 
 test: $(VENV)/dev  ## Run the tests (PYTEST="-k paddle" passes options on)
 	$(BIN)/python -m pytest -n 2 $(PYTEST)
 
-lint: $(VENV)/dev  ## Check style and format
+lint: $(VENV)/dev  ## Check style and format, and the files for GitHub
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-issue-forms \
+		.github/ISSUE_TEMPLATE/bug.yml .github/ISSUE_TEMPLATE/idea.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-issue-config \
+		.github/ISSUE_TEMPLATE/config.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.citation-file-format CITATION.cff
 
-# A type checker finds a package by the name of its folder, and a clone's may be any: so a folder
-# `arkanoid` with links to the packages is made (where there are no links, with copies).
+# A type checker finds a package by the name of its folder, but a clone may have any name. So this
+# makes a folder `arkanoid` with links to the packages; where there are no links, with copies.
 types: $(VENV)/dev  ## Check types
 	rm -rf build/types && mkdir -p build/types/arkanoid
 	for name in py.typed *.py */__init__.py; do \
@@ -44,68 +44,54 @@ types: $(VENV)/dev  ## Check types
 	$(BIN)/mypy
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
 
-format: $(VENV)/dev  ## Put the sources into format, mend what can be mended
+format: $(VENV)/dev  ## Format the sources, and correct what can be corrected automatically
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-# The same for what is published, each installed in a fresh environment.
-distcheck: $(VENV)/dev  ## Build wheel and sdist, and run the tests against each
-	$(BIN)/python tests/distributions.py $(PYTEST)
-
-docs: $(VENV)/docs  ## Make the documentation's site, build/docs/index.html
+docs: $(VENV)/docs  ## Build the documentation's site, build/docs/index.html
 	$(BIN)/sphinx-build -W --keep-going -q -E -c docs/site -d build/doctrees docs build/docs
-	$(BIN)/python docs/site/check_links.py build/docs
 
 check: lint types docs test  ## All of lint, types, docs and test
+
+distcheck: $(VENV)/dev  ## Build wheel and sdist, and run the tests against each (PYTEST="-x")
+	$(NOX) distcheck -- $(PYTEST)
 
 bench: $(VENV)/bench  ## Run the benchmarks
 	for benchmark in tests/benchmarks/*.py; do $(BIN)/python $$benchmark || exit; done
 
 compat: $(VENV)/dev  ## Try the environment with every trainer, each installed apart (PEER=torchrl)
-	$(BIN)/python tests/compat/run.py $(PEER)
+	$(NOX) $(if $(PEER),'compat($(PEER))',compat)
 
-# RLlib wants a Gymnasium of its own, and so an environment of its own.
-ray:  ## Train with RLlib on several processes and two nodes, and measure it (RAY="scaling")
-	$(MAKE) VENV=$(RAY_VENV) $(RAY_VENV)/ray
-	$(RAY_VENV)/bin/python tests/cluster/run.py $(RAY)
+ray: $(VENV)/dev  ## Train with RLlib on several processes and two nodes (RAY="scaling")
+	$(NOX) ray -- $(RAY)
+
+lock: $(VENV)/dev  ## Pin the versions that make installs (LOCK=--upgrade for the newest)
+	$(NOX) lock -- $(LOCK)
 
 clean:  ## Remove what was built and installed (not runs/)
 	rm -rf $(VENV) build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
-$(VENV)/train: $(REQUIREMENTS) | $(BIN)/python
+$(VENV)/train: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[train,play]'
 	touch $@
 
-$(VENV)/dev: $(REQUIREMENTS) | $(BIN)/python
+$(VENV)/dev: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[dev]'
 	touch $@ $(VENV)/train
 
-$(VENV)/docs: $(REQUIREMENTS) | $(BIN)/python
+$(VENV)/docs: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[docs]'
 	touch $@
 
-$(VENV)/bench: $(REQUIREMENTS) | $(BIN)/python
+$(VENV)/bench: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[bench]'
 	touch $@
 
-$(VENV)/ray: pyproject.toml constraints-ray.txt version.py | $(BIN)/python
-	$(INSTALL:constraints.txt=constraints-ray.txt) '.[ray,train]'
-	touch $@
-
-# Another make than GNU's takes the sign of an order-only prerequisite for a file, and makes it.
-|:
-	@echo 'This Makefile needs GNU make; where make is another, GNU make is often called gmake.' \
-		>&2; exit 1
-
-$(BIN)/python:
-	@test -n '$(PYTHON)' || { echo 'arkanoid needs Python 3.11 or newer, and none was found.' \
-		'Install one, or name it: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
-		echo 'arkanoid needs Python 3.11 or newer; $(PYTHON) is older or missing.' \
-		'Name another: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
-		echo '$(PYTHON) lacks the venv module: install it (Debian, Ubuntu: apt install' \
-		'python3-venv), or name another Python: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; \
-		exit 1; }
+# An environment that was interrupted while it was made has a Python, but not this file.
+$(VENV)/made:
+	@$(or $(PYTHON),false) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo 'arkanoid needs Python 3.11 or newer.' \
+		'Install it, or name it: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
+	touch $@

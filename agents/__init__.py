@@ -1,8 +1,6 @@
-"""PPO agents that learn to beat the game.
+"""PPO agents that learn to beat the game: training, measuring and showing them.
 
-From the outside in: `cli` is the console script; `train` and `evaluate` are its commands;
-`settings` says what an experiment is; `adapter` lets stable-baselines3 train on a Gymnasium vector
-environment; `learning` is PPO; `episodes`, `baselines` and `report` measure a policy.
-
-Nothing here imports torch or stable-baselines3 before it is needed.
+`adapter.GymnasiumVecEnv`, which lets stable-baselines3 train on a Gymnasium vector environment, is
+for everybody. The rest serves the command `arkanoid` (`cli`); its rooms import one way: `commands`
+from `show`, `learn`, `measure` and `experiment`, each from those after it.
 """

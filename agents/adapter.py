@@ -1,7 +1,7 @@
 """Gymnasium's vector environments for stable-baselines3, which has an interface of its own.
 
-`GymnasiumVecEnv` is the only thing between the two. It changes no number: training on it gives
-the same weights, bit for bit, as on stable-baselines3's own `DummyVecEnv` of single environments.
+`GymnasiumVecEnv` changes no number: training on it gives the same weights, bit for bit, as training
+on stable-baselines3's own `DummyVecEnv` of single environments.
 """
 
 import time
@@ -25,15 +25,15 @@ from stable_baselines3.common.vec_env.base_vec_env import (
 class GymnasiumVecEnv(VecEnv):
     """A stable-baselines3 `VecEnv` over a Gymnasium `VectorEnv` in SAME_STEP mode.
 
-    The info of a world is empty until its episode ends. Then it is the episode's final info with
-    ``terminal_observation``, ``TimeLimit.truncated`` (cut, not ended: the value of what would have
-    followed counts) and ``episode``, which stable-baselines3's statistics read: return ``r``,
-    length ``l`` in steps, seconds ``t`` since this object was made, what ``info_keywords`` names
-    of the final info, and the sums over the episode's steps of what ``summed_keywords`` names.
+    A world's info is empty until its episode ends. Then it is the episode's final info with
+    ``terminal_observation``, ``TimeLimit.truncated`` (truncated and not terminated: the value of
+    the last observation counts) and ``episode``. The latter has the return ``r``, the length ``l``
+    in steps, the seconds ``t`` since this object was made, the values of the final info that
+    ``info_keywords`` names, and the sums over all steps of those that ``summed_keywords`` names.
 
-    Observations, rewards and infos belong to the caller, also where the environment reuses its
-    arrays (``copy=False``): stable-baselines3 keeps an observation until after the next step, and
-    adds to the rewards.
+    Observations, rewards and infos belong to the caller, even if the environment reuses its arrays
+    (``copy=False``): stable-baselines3 keeps an observation until after the next step, and adds to
+    the rewards.
     """
 
     def __init__(
@@ -62,14 +62,14 @@ class GymnasiumVecEnv(VecEnv):
     def reset(self) -> VecEnvObs:
         """Start an episode in every world, with the seeds and options that were set before.
 
-        Worlds whose options differ are reset one group after the other, by ``reset_mask``.
+        Worlds with equal options are reset together, by ``reset_mask``.
         """
         seeds = None if all(seed is None for seed in self._seeds) else list(self._seeds)
         observations: Any = None
         self.reset_infos = [{} for _ in range(self.num_envs)]
         groups = list(self._options_by_worlds())
         if len(groups) > 1:
-            # Gymnasium's own environments reset some worlds only after all have been reset once.
+            # Gymnasium's own environments reset a part of the worlds only after a reset of all.
             self.env.reset(seed=seeds)  # type: ignore[arg-type]
         for mask, options in groups:
             # Gymnasium types the seed as one integer, though its own environments take a list.
@@ -87,7 +87,7 @@ class GymnasiumVecEnv(VecEnv):
         self._actions = actions
 
     def step_wait(self) -> VecEnvStepReturn:
-        """Step all worlds: observations, rewards (float32), dones and infos, one a world."""
+        """Step all worlds; return observations, rewards (float32), dones and one info per world."""
         observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
         self._returns += rewards
         self._lengths += 1
@@ -96,15 +96,15 @@ class GymnasiumVecEnv(VecEnv):
         dones = terminated | truncated
         world_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         for world in np.flatnonzero(dones).tolist():
-            cut = bool(truncated[world] and not terminated[world])
-            world_infos[world] = self._final_info(infos, world, cut)
+            was_cut = bool(truncated[world] and not terminated[world])
+            world_infos[world] = self._final_info(infos, world, was_cut)
             self.reset_infos[world] = world_info(infos, world)
         return _own(observations), np.array(rewards, np.float32), dones, world_infos
 
-    def _final_info(self, infos: dict[str, Any], world: int, cut: bool) -> dict[str, Any]:
-        """Return what is known at the end of a world's episode, and begin its next one."""
+    def _final_info(self, infos: dict[str, Any], world: int, was_cut: bool) -> dict[str, Any]:
+        """Return the info of a world's ended episode, and begin the statistics of its next one."""
         info = world_info(infos.get("final_info", {}), world)
-        info["TimeLimit.truncated"] = cut
+        info["TimeLimit.truncated"] = was_cut
         info["terminal_observation"] = deepcopy(infos["final_obs"][world])
         info["episode"] = {
             "r": float(self._returns[world]),
@@ -120,7 +120,7 @@ class GymnasiumVecEnv(VecEnv):
         return info
 
     def _options_by_worlds(self) -> Iterator[tuple[NDArray[np.bool_], dict[str, Any] | None]]:
-        """Yield masks (bool [worlds]) of worlds with the same options, and what `reset` takes."""
+        """Yield masks (bool [worlds]) of worlds with equal options, and the options for `reset`."""
         waiting = list(range(self.num_envs))
         while waiting:
             options = self._options[waiting[0]]
@@ -129,12 +129,12 @@ class GymnasiumVecEnv(VecEnv):
             yield mask, (options or None) if mask.all() else {**options, "reset_mask": mask}
 
     def get_statistics(self) -> dict[str, Any]:
-        """Return what is known of the episodes that are being played, for `set_statistics`."""
+        """Return the statistics of the episodes that are being played, for `set_statistics`."""
         sums = {key: values.copy() for key, values in self._sums.items()}
         return {"returns": self._returns.copy(), "lengths": self._lengths.copy(), "sums": sums}
 
     def set_statistics(self, statistics: dict[str, Any]) -> None:
-        """Go on from what `get_statistics` returned, in the same state of the environment."""
+        """Continue from what `get_statistics` returned for the same state of the environment."""
         self._returns[:] = statistics["returns"]
         self._lengths[:] = statistics["lengths"]
         for key, values in self._sums.items():
@@ -159,7 +159,7 @@ class GymnasiumVecEnv(VecEnv):
         return [getattr(self.env.unwrapped, attr_name)] * len(worlds)
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set an attribute of every world. Raises ValueError if told to set only some worlds'."""
+        """Set an attribute of every world. Raises ValueError for a part of the worlds."""
         self._demand_all(indices, f"set {attr_name!r}")
         set_each = getattr(self.env.unwrapped, "set_attr", None)
         if set_each is not None:
@@ -174,11 +174,11 @@ class GymnasiumVecEnv(VecEnv):
         indices: VecEnvIndices = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """Call a method of every world, and return each one's result.
+        """Call a method of every world, and return one result per world.
 
-        A native batch is called once; where it returns a list, tuple or array of one item a world,
-        each world gets its item, and otherwise all get the same. Raises ValueError if told to call
-        only some worlds.
+        A native batch is called once. If it returns a list, tuple or array with one item per world,
+        each world gets its item; otherwise all get the same. Raises ValueError for a part of the
+        worlds.
         """
         self._demand_all(indices, f"call {method_name!r}")
         call_each = getattr(self.env.unwrapped, "call", None)
@@ -192,9 +192,9 @@ class GymnasiumVecEnv(VecEnv):
     def env_is_wrapped(
         self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
     ) -> list[bool]:
-        """Tell for each world whether it is wrapped so.
+        """Tell for each world whether a wrapper of this class is around it.
 
-        True for stable-baselines3's `Monitor`, too: this adapter keeps the same statistics.
+        True for stable-baselines3's `Monitor`, because this adapter keeps the same statistics.
         """
         worlds = list(self._get_indices(indices))
         if issubclass(wrapper_class, Monitor):
@@ -210,7 +210,7 @@ class GymnasiumVecEnv(VecEnv):
 
 
 def world_info(infos: dict[str, Any], world: int) -> dict[str, Any]:
-    """Return one world's info of a vector environment's, which masks each key by ``_key``."""
+    """Return one world's info from a vector environment's infos, masked by ``_key``."""
     info: dict[str, Any] = {}
     for key, value in infos.items():
         mask = infos.get(f"_{key}")
@@ -221,7 +221,7 @@ def world_info(infos: dict[str, Any], world: int) -> dict[str, Any]:
 
 
 def _own(observations: VecEnvObs) -> VecEnvObs:
-    """Return observations that nobody overwrites."""
+    """Return a copy of observations."""
     # An array's own copy is several times faster than deepcopy's.
     return observations.copy() if isinstance(observations, np.ndarray) else deepcopy(observations)
 

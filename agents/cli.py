@@ -1,7 +1,8 @@
-"""The console script `arkanoid`: one subcommand a module.
+"""The console script `arkanoid`.
 
-A command's module has ``SUMMARY``, ``add_arguments(parser)`` and ``run(arguments, overrides)``,
-which returns the exit status. It imports what is slow or optional inside `run`.
+Each subcommand is a module of `commands` with ``add_arguments(parser)`` and
+``run(arguments, overrides)``, which returns the exit status. Only the module of the command that
+runs is imported: playing by hand needs none of the packages for training.
 """
 
 import argparse
@@ -9,49 +10,46 @@ import io
 import itertools
 import sys
 from collections.abc import Sequence
-from types import ModuleType
+from importlib import import_module
+from typing import Any
 
 from gymnasium.error import DependencyNotInstalled
 
 from .. import __version__
-from .commands import (
-    evaluate,
-    levels,
-    play,
-    record,
-    replay,
-    report,
-    reproduce,
-    train,
-    tune,
-    watch,
-)
-from .experiment.schema import SettingsError
+from .experiment.errors import SettingsError
 
-COMMANDS: dict[str, ModuleType] = {
-    "play": play,
-    "replay": replay,
-    "levels": levels,
-    "train": train,
-    "reproduce": reproduce,
-    "tune": tune,
-    "evaluate": evaluate,
-    "watch": watch,
-    "record": record,
-    "report": report,
+# Each subcommand, which is its module's name, and what it does.
+COMMANDS = {
+    "play": "play by hand, in a window",
+    "replay": "show a recorded game, export it or check it",
+    "levels": "list the named levels, or draw any level",
+    "train": "train PPO on the game, then compare it with the baselines",
+    "reproduce": "train a run again and compare its weights, bit for bit",
+    "tune": "search for hyper-parameters",
+    "evaluate": "measure trained models against the baselines",
+    "watch": "watch an agent play in a window",
+    "film": "write a film of an agent at play",
+    "report": "write one page about an agent: curves, tables, a film, settings",
 }
-# These take no settings, ``--key value``: all their options are argparse's.
+# These take no settings, ``--key value``: argparse reads all their options.
 _WITHOUT_SETTINGS = {"play", "replay", "levels"}
+# Options of the other commands that are no settings: without and with a value.
+_FLAGS = {"--help", "--version", "--json"}
+_OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
+_OPTIONS |= {"--trials"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
     "PIL": "train",
-    "imageio": "train",
     "imageio_ffmpeg": "train",
+    "jinja2": "train",
+    "markdown_it": "train",
     "matplotlib": "train",
     "optuna": "train",
+    "pydantic": "train",
     "stable_baselines3": "train",
     "tensorboard": "train",
+    "tomli_w": "train",
     "torch": "train",
     "tqdm": "train",
     "pygame": "play",
@@ -61,19 +59,18 @@ _EXTRAS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status.
 
-    0: done; 1: an extra is missing, or a replay is not what was played; 2: the user's mistake;
-    130: Ctrl-C.
+    0: done; 1: an extra is missing, or a replay plays another game than was recorded; 2: the
+    user's mistake; 130: Ctrl-C.
     """
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # A letter that the terminal or file does not know is no reason to lose what was measured.
+        # A letter that the terminal or file cannot show must not cost the results.
         sys.stdout.reconfigure(errors="replace")
     words = list(sys.argv[1:] if argv is None else argv)
     overrides: list[tuple[str, str]] = []
     if not words or words[0] not in _WITHOUT_SETTINGS:
         words, overrides = split_overrides(words)
-    arguments = _parser().parse_args(words)
     try:
-        status: int = COMMANDS[arguments.command].run(arguments, overrides)
+        return _run(words, overrides)
     except SettingsError as error:
         return _fail(str(error), 2)
     except DependencyNotInstalled as error:
@@ -85,14 +82,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         if package not in _EXTRAS:
             raise
         return _fail(f'{package} is missing: pip install "arkanoid[{_EXTRAS[package]}]"', 1)
-    return status
 
 
 def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
     """Split a command line into argparse's words and the settings ``--key value``.
 
-    ``--key=value`` is the same. What begins with ``--`` and is no flag is a setting; its value may
-    begin with a minus. Exits with a message if the value is missing.
+    ``--key=value`` means the same. A word that begins with ``--`` and is no option of a command is
+    a setting; its value may begin with a minus. Exits with a message if the value is missing.
     """
     words: list[str] = []
     overrides: list[tuple[str, str]] = []
@@ -113,25 +109,26 @@ def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str
     return words, overrides
 
 
-# What is the commands' own, and no setting: without and with a value.
-_FLAGS = {"--help", "--version", "--json"}
-_OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
-_OPTIONS |= {"--trials"}
-
-
-def _parser() -> argparse.ArgumentParser:
+def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
+    """Parse the words and run the command; return its exit status."""
     parser = argparse.ArgumentParser(prog="arkanoid", description="Arkanoid, and agents for it.")
     parser.add_argument("--version", action="version", version=__version__)
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, module in COMMANDS.items():
+    chosen = next((word for word in words if not word.startswith("-")), None)
+    module: Any = None
+    for name, summary in COMMANDS.items():
         command = commands.add_parser(
             name,
-            help=module.SUMMARY,
-            description=module.SUMMARY,
+            help=summary,
+            description=summary,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        module.add_arguments(command)
-    return parser
+        if name == chosen:
+            module = import_module(f".commands.{name}", __package__)
+            module.add_arguments(command)
+    arguments = parser.parse_args(words)
+    status: int = module.run(arguments, overrides)
+    return status
 
 
 def _fail(message: str, status: int) -> int:

@@ -1,1 +1,1 @@
-"""Experiments, as TOML."""
+"""The packaged experiments and search spaces, as TOML files."""

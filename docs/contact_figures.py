@@ -54,7 +54,7 @@ ALGORITHMS = (
 
 
 def colliders() -> Figure:
-    """Draw the six colliders: region, the body's position, and the edges' outward normals."""
+    """Draw the six colliders, each with the body's position and the edges' outward normals."""
     shapes = (
         (Particle(1.1), "Particle(1.1)"),
         (HalfPlane((1.0, 2.0), 0.6), "HalfPlane((1, 2), 0.6)"),
@@ -82,7 +82,7 @@ def colliders() -> Figure:
     return drawn
 
 
-# One of each kind as the first of a pair, lower left in its panel, and as the second, upper right.
+# One body of each kind as the first of a pair (lower left) and as the second (upper right).
 AS_FIRST = (
     Body(Particle(1.0), (-0.6, -0.4)),
     Body(HalfPlane((0.45, 1.0)), (0.0, 0.05)),
@@ -99,7 +99,7 @@ AS_SECOND = (
     Body(Rectangle(1.8, 1.1, -0.6), (0.45, 0.3)),
     Body(Convex(TRIANGLE), (0.45, 0.35)),
 )
-# Two half-planes can be separated only if they are back to back.
+# Two half-planes are separable only if they are back to back.
 BACK_TO_BACK = {
     (1, 1): (Body(HalfPlane((0.45, 1.0)), (0.0, 0.3)), Body(HalfPlane((-0.9, -2.0)), (0.0, -0.3))),
     (1, 2): (
@@ -114,7 +114,7 @@ BACK_TO_BACK = {
 
 
 def contacts() -> Figure:
-    """Draw how each of the 21 pairs overlaps: normal, depth, point, and where b is set free."""
+    """Draw the contacts of all 21 pairs: normal, depth, point, and b after the separation."""
     cell, across, up, left = 1.1, 1.2, 1.3, 0.1
     drawn = figure(6 * across + 2 * left, 6 * up + 0.45)
     for first, second, algorithm in REGISTERED:
@@ -145,7 +145,7 @@ def draw_contact(axes: Axes, a: Body, b: Body) -> None:
 
 
 def explain_contacts(drawn: Figure) -> None:
-    """Draw a larger contact into the empty corner, with its parts named."""
+    """Draw a larger contact with its parts named, into the empty corner."""
     axes = panel(drawn, (0.1, 0.25, 2.6, 2.6), (-1.8, -2.0, 1.8, 1.6), "contact-legend")
     a = Body(Particle(1.05), (-0.65, -0.3))
     b = Body(AxisAlignedRectangle(1.4, 1.1), (0.45, 0.4))
@@ -206,7 +206,7 @@ def minkowski() -> Figure:
 
 
 def difference(a: Collider, b: Collider) -> Convex:
-    """Return the offsets of b from a at which the two overlap, as the engine's axes bound them."""
+    """Return all offsets of b from a at which the two overlap, from the engine's axes."""
     shapes, edges = shape_table((a, b))
     bounds = []
     for axis in range(len(a.edges) + len(b.edges)):
@@ -216,7 +216,7 @@ def difference(a: Collider, b: Collider) -> Convex:
 
 
 def opened() -> Figure:
-    """Draw regions with missing edges, and two that nothing finite separates."""
+    """Draw regions with missing edges, and a pair that no finite translation separates."""
     drawn = figure(7.5, 2.1)
     trapezium = [(-1.3, -1.2), (1.3, -1.2), (0.7, 0.2), (-0.7, 0.2)]
     views = (-2.0, -2.0, 2.0, 2.0)

@@ -1,7 +1,7 @@
-"""What the figures are drawn with: regions, arrows, panels. No geometry but the engine's own.
+"""Tools for drawing the figures: regions, arrows, panels. All geometry is the engine's.
 
-Every artist has a name, which becomes the `id` of its group in the SVG file: a test compares what
-is drawn by these names.
+Every artist has a name, which becomes the `id` of its group in the SVG file. A test compares the
+figures by these names.
 """
 
 import io
@@ -21,7 +21,7 @@ from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
 Point = Sequence[float]
 
-# Blue and orange are told apart by almost everyone, and in print without colour by their darkness.
+# Almost everyone can distinguish blue and orange, and their brightness differs, too, for print.
 FIRST = "#2f6fb0"
 SECOND = "#e08a2c"
 INK = "#1d2530"
@@ -30,7 +30,7 @@ FAINT = "#d6dbe1"
 PAPER = "#fbfbfa"
 ACCENT = "#b3262f"
 
-# Two regions that many figures show.
+# Two regions that several figures show.
 PENTAGON = [(-1.0, -0.6), (0.35, -1.0), (1.1, 0.1), (0.3, 1.0), (-0.8, 0.7)]
 TRIANGLE = [(-0.9, -0.8), (1.1, -0.5), (-0.1, 1.0)]
 
@@ -58,14 +58,14 @@ def figure(width: float, height: float) -> Figure:
 
 
 def save(drawn: Figure, path: Path) -> None:
-    """Write a figure as SVG: no date, nothing that changes from run to run, few digits."""
+    """Write a figure as SVG, with few digits, and the same bytes in every run."""
     text = io.StringIO()
     drawn.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     path.write_text(shortened(text.getvalue()), encoding="utf-8")
 
 
 def shortened(text: str) -> str:
-    """Return an SVG's text with two digits a number. Factors keep theirs: letters would grow."""
+    """Round the numbers of an SVG to two digits, except scale factors: letters would grow."""
     return re.sub(
         r"scale\([^)]*\)|\d+\.\d{3,}",
         lambda found: found[0] if found[0].startswith("s") else f"{float(found[0]):.2f}",
@@ -81,9 +81,9 @@ def panel(
     Args:
         drawn: the figure.
         box: left, bottom, width, height in inches.
-        view: the world's left, bottom, right, top that it shows.
-        name: before a full stop, of everything in it.
-        title: above it.
+        view: left, bottom, right and top of the part of the world that it shows.
+        name: the names of all artists in the panel begin with it and a full stop.
+        title: text above the panel.
     """
     width, height = drawn.get_size_inches()
     left, bottom, across, up = box
@@ -98,13 +98,13 @@ def panel(
 
 
 def named(axes: Axes, artist: Polygon | Circle | FancyArrowPatch, name: str) -> None:
-    """Add something to a panel under a name."""
+    """Add an artist to a panel under a name."""
     artist.set_gid(f"{axes.get_label()}.{name}")
     axes.add_artist(artist)
 
 
 def half_planes(collider: Collider, position: Point) -> list[HalfPlane]:
-    """Return the half-planes whose intersection a region without rounding is, in the world."""
+    """Return the half-planes that bound a region without rounding, in world coordinates."""
     return [
         HalfPlane(
             (edge.normal_x, edge.normal_y),
@@ -115,7 +115,7 @@ def half_planes(collider: Collider, position: Point) -> list[HalfPlane]:
 
 
 def outline(axes: Axes, collider: Collider, position: Point) -> list[tuple[float, float]]:
-    """Return the corners of what a panel shows of a region: the engine intersects the two."""
+    """Return the corners of a region, cut off at the panel's edges by the engine."""
     left, right = axes.get_xlim()
     bottom, top = axes.get_ylim()
     window = [
@@ -137,7 +137,7 @@ def region(
     ghost: bool = False,
     fill: float = 0.22,
 ) -> None:
-    """Draw a region where a body is; a ghost, where it was or will be, is a dashed outline."""
+    """Draw a region at a position; a ghost (a past or future place) is a dashed outline."""
     style = {"linewidth": 0.9, "linestyle": (0, (2.5, 1.8))} if ghost else {"linewidth": 1.4}
     if collider.rounding:
         named(axes, Circle(position, collider.rounding, fc="none", ec=colour, **style), name)
@@ -159,7 +159,7 @@ def region(
 
 
 def border(axes: Axes, start: Point, direction: Point) -> tuple[float, float]:
-    """Return where a ray from within a panel leaves it."""
+    """Return where a ray that starts in a panel leaves it."""
     way = math.inf
     for begin, step, limits in zip(
         start, direction, (axes.get_xlim(), axes.get_ylim()), strict=True
@@ -170,7 +170,7 @@ def border(axes: Axes, start: Point, direction: Point) -> tuple[float, float]:
 
 
 def rounded(axes: Axes, name: str, collider: Collider, radius: float, colour: str) -> None:
-    """Draw the points within a radius of a closed region about the origin: its corners are arcs."""
+    """Draw a closed region about the origin, rounded by a radius: its corners become arcs."""
     corners = []
     for index, edge in enumerate(collider.edges):
         following = collider.edges[(index + 1) % len(collider.edges)]
@@ -202,7 +202,7 @@ def arrow(
     width: float = 1.3,
     head: float = 7.0,
 ) -> None:
-    """Draw an arrow from point to point."""
+    """Draw an arrow from start to end."""
     shape = FancyArrowPatch(
         start,
         end,
@@ -220,7 +220,7 @@ def arrow(
 
 
 def dot(axes: Axes, name: str, at: Point, colour: str = INK, size: float = 1.7) -> None:
-    """Draw a dot whose radius is in points, whatever the panel's scale."""
+    """Draw a dot; its size is a radius in points, independent of the panel's scale."""
     left, right = axes.get_xlim()
     across = axes.get_position().width * axes.figure.get_size_inches()[0] * POINTS_PER_INCH
     named(
@@ -239,6 +239,6 @@ def label(
     shift: Point = (0.0, 0.0),
     **style: object,
 ) -> None:
-    """Write something at a point of the world, or some way off."""
+    """Write text at a point of the world, moved by a shift."""
     settings = {"fontsize": 7.5, "ha": "center", "va": "center", "zorder": 7, **style}
     axes.text(at[0] + shift[0], at[1] + shift[1], text, color=colour, **settings)

@@ -1,4 +1,4 @@
-"""Draws the pictures in docs/figures, all from the engine's own answers.
+"""Draws the pictures in docs/figures from the engine's own answers.
 
 Run it as ``python docs/figures.py [folder]``.
 """

@@ -84,7 +84,7 @@ FLIGHTS = (
 
 
 def impacts() -> Figure:
-    """Draw flights until the first touch: start, way, touch, and the normal there."""
+    """Draw flights until the first touch, each with its start, its way and the normal."""
     drawn = figure(7.5, 4.15)
     for index, (title, a, b) in enumerate(FLIGHTS):
         box = (0.1 + 1.85 * (index % 4), 0.1 + 2.1 * (1 - index // 4), 1.7, 1.7)
@@ -95,7 +95,7 @@ def impacts() -> Figure:
 
 
 def draw_flight(axes: Axes, a: Body, b: Body) -> float:
-    """Draw two bodies that fly until they touch, and return when that is."""
+    """Draw two bodies that fly until they touch, and return the time."""
     impact = time_of_impact(a, b)
     ends = []
     for name, body, colour in (("a", a, FIRST), ("b", b, SECOND)):
@@ -192,7 +192,7 @@ def disc_convex() -> Figure:
 
 
 def draw_line_crossings(axes: Axes, ball: Body) -> None:
-    """Draw where a disc's centre comes within its radius of each face's line; the last is it."""
+    """Draw where the centre crosses each face's line, moved by the radius. The last one decides."""
     times = {}
     for index, edge in enumerate(QUADRILATERAL.edges):
         normal = np.array((edge.normal_x, edge.normal_y))
@@ -219,7 +219,7 @@ def draw_line_crossings(axes: Axes, ball: Body) -> None:
 
 
 def axes_in_time() -> Figure:
-    """Draw when the gap along each separating axis is closed: the last to close is the impact."""
+    """Draw when each separating axis has no gap. The impact is when the last gap closes."""
     drawn = figure(7.4, 2.9)
     a = Body(Rectangle(1.8, 1.1, 0.45), (-0.9, -0.9))
     b = Body(Convex(TRIANGLE, rotation=0.3), (1.1, 1.0), (-0.8, -0.65))

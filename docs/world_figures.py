@@ -31,11 +31,11 @@ ROOM = (
 )
 DURATION = 2.0
 TICKS = 6
-MARGIN = 0.15  # of the walls that is shown
+MARGIN = 0.15  # how much of the walls is shown
 
 
 def stepped() -> Figure:
-    """Draw where a ball flies in one exact step, and in ticks of the discrete procedure."""
+    """Draw a ball's way in one exact step, and in ticks of the discrete procedure."""
     drawn = figure(7.4, 2.8)
     panels = (
         ("exact", "one step, from hit to hit", draw_step),
@@ -59,7 +59,7 @@ def draw_step(axes: Axes) -> None:
     world = World((*ROOM, *OBSTACLES, BALL))
     places = [BALL.position]
     for number, hit in enumerate(world.step(DURATION)):
-        # The ball is the last body: the normal points to it.
+        # The ball is the last body, so the normal points towards it.
         places.append(hit["point"] + BALL.collider.radius * hit["normal"])
         arrow(axes, f"normal-{number}", hit["point"], hit["point"] + 0.4 * hit["normal"], head=5.0)
         dot(axes, f"point-{number}", hit["point"], ACCENT)
@@ -70,7 +70,7 @@ def draw_step(axes: Axes) -> None:
 
 
 def draw_ticks(axes: Axes) -> None:
-    """Draw where the ball is after every tick."""
+    """Draw the ball after every tick."""
     world = World((*ROOM, *OBSTACLES, BALL), continuous=False)
     places = [BALL.position]
     for tick in range(TICKS):

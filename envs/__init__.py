@@ -1,4 +1,4 @@
-"""The game and its Gymnasium environments, on nothing but the engine."""
+"""The game and its Gymnasium environments, built on nothing but the engine."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ __all__ = [
     "replay_frames",
 ]
 
-_HOMES = {
+_MODULES = {
     "ArkanoidEnv": "arkanoid_env",
     "ArkanoidVectorEnv": "vector_env",
     "Replay": "batch.replays",
@@ -29,7 +29,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    # Lazily, for registering the environments needs none of the kernels.
-    if name not in _HOMES:
+    # Imported on demand: registering the environments needs none of the kernels.
+    if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    return getattr(import_module(f".{_MODULES[name]}", __name__), name)

@@ -22,7 +22,7 @@ from .interface import (
 )
 from .levels.generator import MAX_SEED
 from .rules import TICKS_PER_SECOND
-from .state import INFO_FIELDS, Outcome
+from .state import INFO_FIELDS, Outcome, WorldRecord
 
 if TYPE_CHECKING:
     from .batch.recorder import Recorder
@@ -62,14 +62,16 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         self.action_space = action_space(self.config)
         self.layout = self._batch.observer.layout
         table = COMMANDS.get(self.config.actions)
-        # As Python's numbers, which are put into an array faster than a row of another array is.
+        # As Python's numbers: NumPy writes them into an array faster than a row of another array.
         self._commands = None if table is None else table.tolist()
         self._window: Window | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode; a seed determines all that follows, no seed goes on as it was.
+        """Begin an episode.
+
+        A seed determines all that follows. Without one the generator goes on from where it is.
 
         Args:
             seed: of the game's random numbers.
@@ -97,16 +99,16 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         else:
             raise ValueError(f"action {action!r} is not in {self.action_space}")
         batch.step()
-        # An element of a structured array would be slower to make than all of them as tuples.
+        # As tuples, because NumPy takes longer to make one record.
         (outcome,) = batch.outcomes.tolist()
         if self.render_mode == "human":
             self._show()
         return (
-            batch.observations[0].copy(),
+            batch.observer.observations[0].copy(),
             outcome[_REWARD],
             outcome[_TERMINATED],
             outcome[_TRUNCATED],
-            self._info(outcome),
+            dict(zip(INFO_FIELDS, _info_values(outcome), strict=True)),
         )
 
     def render(self) -> NDArray[np.uint8] | None:
@@ -122,11 +124,20 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             )
         return None
 
+    @property
+    def state(self) -> WorldRecord:
+        """The state of the game: a read-only view, which always shows the present.
+
+        It is a NumPy record; its fields are those of `arkanoid.envs.state.World`, for example
+        ``env.state.paddle_x`` or ``env.state["brick_hits"]``. ``env.state.copy()`` keeps a state.
+        """
+        return self._batch.state[0]
+
     def snapshot(self) -> bytes:
         """Return the whole state, random numbers included, to go on from with `restore`.
 
-        What wrappers count is not in it, `TimeLimit`'s steps, say; a deep copy of the wrapped
-        environment has that, too.
+        What wrappers count, such as the steps of `TimeLimit`, is not in it. A deep copy of the
+        wrapped environment has that, too.
 
         Raises:
             RuntimeError: the environment was never reset.
@@ -149,14 +160,14 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         return self._shown()
 
     def clone(self, seed: int | None = None) -> "ArkanoidEnv":
-        """Return an independent environment in the same state, for planning: it takes some µs.
+        """Return an independent environment in the same state, within some µs, for planning.
 
-        Only what never changes is shared, and the spaces; `copy.deepcopy` shares nothing. A clone
-        has no window.
+        The two share the spaces and what never changes; `copy.deepcopy` shares nothing. A clone has
+        no window.
 
         Args:
-            seed: of the clone's random numbers from here on. None: it has the same ones ahead, so
-                that a planner sees what luck will bring.
+            seed: of the clone's random numbers from here on. None: they will be the same as in
+                this environment, so that a planner sees what chance will bring.
         """
         clone = object.__new__(type(self))
         clone.__dict__.update(self.__dict__)
@@ -170,7 +181,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         return clone
 
     def record(self) -> "Recorder":
-        """Begin to record games, for replays: from the next reset on, or the one just made."""
+        """Begin to record games for replays, from the next reset on or from the one just made."""
         # Imported on demand: most play is not recorded.
         from .batch.recorder import Recorder
 
@@ -198,13 +209,12 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
 
     def _shown(self) -> tuple[Observation, dict[str, Any]]:
         """Return the present observation and info."""
-        return self._batch.observations[0].copy(), self._info(self._batch.outcomes.tolist()[0])
-
-    def _info(self, outcome: tuple[Any, ...]) -> dict[str, Any]:
-        return dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
+        (outcome,) = self._batch.outcomes.tolist()
+        info = dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
+        return self._batch.observations[0].copy(), info
 
     def _show(self) -> None:
-        """Show the game in the window, if there is to be one, and open it at first."""
+        """Show the game in render mode ``"human"``; the first call opens the window."""
         if self.render_mode != "human":
             return
         # Imported on demand: playing without pictures needs none of this.

@@ -1,86 +1,91 @@
-"""Every knob of the environment, validated: what `gym.make`'s keywords become."""
+"""Every option of the environment, with its meaning and checked: the keywords of `gym.make`."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
 
-from .checks import check_choice, check_integer, check_number
+from .checks import check_boolean, check_choice, check_integer, check_number
 from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
 
-ACTIONS = ("discrete6", "discrete3", "box")
-OBSERVATIONS = ("vector", "grid", "rgb")
-# The keywords that say how a game is seen. All others decide its course.
+# What the keywords that take one of some words mean by each.
+OBSERVATIONS = {
+    "vector": "float32 numbers",
+    "grid": "float32 planes over the cells of the field",
+    "rgb": "uint8 pictures",
+}
+ACTIONS = {
+    "discrete6": "0 nothing, 1 left, 2 right, and 3, 4, 5 the same with fire",
+    "discrete3": "0 nothing, 1 left, 2 right, while balls leave the paddle and the laser shoots by "
+    "themselves",
+    "box": "float32 [2], each in [-1, 1]: the paddle's velocity (1: full speed to the right), and "
+    "fire if positive",
+}
+REWARD_MEANINGS = {
+    "progress": "each needed hit pays 1 / needed hits of the round, and clearing it pays 1",
+    "score": "points / 1000",
+    "sparse": "clearing a round pays 1",
+}
+DEFLECTION_MEANINGS = {
+    "angle": "the place on the paddle where the ball lands decides its angle",
+    "zones6": "six zones of the paddle give six fixed angles",
+    "physical": "the ball bounces from the paddle's shape",
+}
+# The keywords that say only how a game is seen. All others decide its course.
 _PICTURES = ("size", "grey", "stack")
 _SEEN = ("observation", *_PICTURES)
 MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
 
 
+def _keyword(default: Any, meaning: str, words: Mapping[str, str] | None = None) -> Any:
+    """Return a dataclass field that knows its meaning, and the meanings of its words."""
+    return field(default=default, metadata={"meaning": meaning, "words": words or {}})
+
+
 @dataclass(frozen=True)
 class Config:
-    """The configuration of an environment; every field is a keyword of `gym.make`.
+    """The configuration of an environment; every field is a keyword of `gym.make`."""
 
-    Args:
-        observation: ``"vector"`` (float32 numbers, see `observation`), ``"grid"`` (float32 planes
-            over the cells of the field, see `grid`) or ``"rgb"`` (uint8 pictures, see `pixels`).
-        size: pixels of a picture's sides, or (height, width). It needs ``"rgb"``, as the next two.
-        grey: whether pictures have one channel, their brightness, instead of red, green and blue.
-        stack: how many pictures an observation shows, the latest as the last.
-        actions: ``"discrete6"``, (no-op, left, right) × (fire); ``"discrete3"``, without fire
-            (balls leave the paddle, and the laser shoots, by themselves); or ``"box"``, float32
-            [2]: velocity in [-1, 1], as a part of the paddle's speed, and fire if it is positive.
-        reward: ``"progress"`` (each needed hit pays 1 / needed hits of the round, clearing pays 1),
-            ``"score"`` (points / 1000) or ``"sparse"`` (1 for clearing a round).
-        frame_skip: ticks a decision lasts; the reward is summed.
-        sticky_action: probability that a decision repeats the one before.
-        lives: balls one may lose before the episode terminates.
-        life_penalty: what the loss of a life costs.
-        levels: ``"campaign"`` (the named rounds, the boss's, then generated ones without end),
-            ``"train"`` or ``"test"`` (generated from the seeds for that), ``"seeds:100-200"`` or a
-            `range` (generated from these seeds); or a name of a packaged round, the path of a level
-            file, or a sequence of such, played in turn again and again.
-        difficulty: of generated rounds, in [0, 1]; None lets it rise from round to round.
-        capsules: whether there are any.
-        capsule_rate: the part of the coloured bricks that hide one.
-        enemies: whether there are any, and the boss.
-        speed: factor on the ball's speed.
-        paddle: factor on the paddle's width.
-        deflection: ``"angle"`` (by where on the paddle the ball lands), ``"zones6"`` (six fixed
-            directions) or ``"physical"`` (the pure bounce from the paddle's shape).
-        max_decisions: decisions after which an episode is truncated.
-
-    Raises:
-        ValueError: a value is out of range; the message says which and what is legal.
-        TypeError: a value is of the wrong type.
-    """
-
-    observation: str = "vector"
-    size: int | Sequence[int] = 84
-    grey: bool = False
-    stack: int = 1
-    actions: str = "discrete6"
-    reward: str = "progress"
-    frame_skip: int = 4
-    sticky_action: float = 0.0
-    lives: int = 3
-    life_penalty: float = 0.0
-    levels: str | range | Sequence[str] = "campaign"
-    difficulty: float | None = None
-    capsules: bool = True
-    capsule_rate: float = CAPSULE_RATE
-    enemies: bool = True
-    speed: float = 1.0
-    paddle: float = 1.0
-    deflection: str = "angle"
-    max_decisions: int = 27_000
+    observation: str = _keyword("vector", "what is observed", OBSERVATIONS)
+    size: int | Sequence[int] = _keyword(
+        84, "with ``'rgb'``: height and width of the pictures in pixels, or (height, width)"
+    )
+    grey: bool = _keyword(False, "with ``'rgb'``: one channel, brightness, instead of three")
+    stack: int = _keyword(
+        1, "with ``'rgb'``: how many of the latest pictures an observation shows, the newest last"
+    )
+    actions: str = _keyword("discrete6", "the action space", ACTIONS)
+    reward: str = _keyword("progress", "what a decision pays", REWARD_MEANINGS)
+    frame_skip: int = _keyword(4, "ticks per decision; the reward is their sum")
+    sticky_action: float = _keyword(0.0, "the probability that a decision repeats the one before")
+    lives: int = _keyword(3, "how many balls may be lost; then the episode terminates")
+    life_penalty: float = _keyword(0.0, "is taken off the reward for each lost life")
+    levels: str | range | Sequence[str] = _keyword(
+        "campaign",
+        "which levels are played. ``'campaign'``: the named levels, the boss last, then generated "
+        "ones without end; ``'train'`` or ``'test'``: generated from the training or test seeds; "
+        "``'seeds:100-200'`` or a ``range``: generated from these seeds; the name of a packaged "
+        "level, the path of a level file, or a sequence of these: in turn, again and again",
+    )
+    difficulty: float | None = _keyword(
+        None, "of generated levels, in [0, 1]; None: it rises from round to round"
+    )
+    capsules: bool = _keyword(True, "whether bricks hide capsules")
+    capsule_rate: float = _keyword(CAPSULE_RATE, "the fraction of coloured bricks that hide one")
+    enemies: bool = _keyword(True, "whether there are enemies and the boss")
+    speed: float = _keyword(1.0, "a factor on the ball's speed")
+    paddle: float = _keyword(1.0, "a factor on the paddle's width")
+    deflection: str = _keyword("angle", "how the paddle deflects a ball", DEFLECTION_MEANINGS)
+    max_decisions: int = _keyword(27_000, "decisions after which the episode is truncated")
 
     def __post_init__(self) -> None:
-        check_choice("observation", self.observation, OBSERVATIONS)
+        check_choice("observation", self.observation, tuple(OBSERVATIONS))
         self._check_pictures()
-        check_choice("actions", self.actions, ACTIONS)
+        check_choice("actions", self.actions, tuple(ACTIONS))
         check_choice("reward", self.reward, tuple(REWARDS))
         check_choice("deflection", self.deflection, tuple(DEFLECTIONS))
         check_integer("frame_skip", self.frame_skip, 1, 1000)
@@ -92,10 +97,10 @@ class Config:
         check_number("paddle", self.paddle, 0.25, 5.0)
         if self.difficulty is not None:
             check_number("difficulty", self.difficulty, 0.0, 1.0)
-        _boolean("capsules", self.capsules)
+        check_boolean("capsules", self.capsules)
         check_number("capsule_rate", self.capsule_rate, 0.0, 1.0)
-        _boolean("enemies", self.enemies)
-        _levels(self.levels)
+        check_boolean("enemies", self.enemies)
+        _check_levels(self.levels)
 
     def _check_pictures(self) -> None:
         if not isinstance(self.size, int | np.integer):
@@ -103,19 +108,19 @@ class Config:
                 raise TypeError(f"size must be an integer or (height, width); got {self.size!r}")
             if len(self.size) != 2:
                 raise ValueError(f"size must be an integer or (height, width); got {self.size!r}")
-            # As a tuple, for JSON and TOML know lists only.
+            # A tuple, because JSON and TOML give lists.
             object.__setattr__(self, "size", tuple(self.size))
         for pixels in self.picture_size:
             check_integer("size", pixels, 1, MAX_SIZE)
-        _boolean("grey", self.grey)
+        check_boolean("grey", self.grey)
         check_integer("stack", self.stack, 1, MAX_STACK)
         if self.observation == "rgb":
             return
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in _PICTURES and value != field.default:
+        for keyword in fields(self):
+            value = getattr(self, keyword.name)
+            if keyword.name in _PICTURES and value != keyword.default:
                 raise ValueError(
-                    f"{field.name}={value!r} says how pictures look, and observation="
+                    f"{keyword.name}={value!r} says how pictures look, and observation="
                     f"{self.observation!r} has none: leave it out, or use observation='rgb'"
                 )
 
@@ -129,24 +134,29 @@ class Config:
 
     @classmethod
     def from_keywords(cls, keywords: dict[str, Any]) -> "Config":
-        """Return the configuration; an unknown keyword is a TypeError naming the nearest one."""
-        known = [field.name for field in fields(cls)]
+        """Return the configuration.
+
+        Raises:
+            TypeError: a keyword is unknown (the message names the nearest one), or a value has
+                the wrong type.
+            ValueError: a value is out of range.
+        """
+        known = [keyword.name for keyword in fields(cls)]
         for name in keywords:
             if name not in known:
                 near = get_close_matches(name, known, 1)
                 hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}."
-                # In Python's own words: TorchRL tries a keyword and looks for them (`GymEnv`).
+                # These are Python's own words: TorchRL's `GymEnv` looks for them.
                 raise TypeError(f"got an unexpected keyword argument {name!r}; {hint}")
         return cls(**keywords)
 
     def plain(self) -> dict[str, Any]:
         """Return the keywords as JSON and TOML hold them; `from_keywords` takes them back."""
-        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
+        return {keyword: _plain(value) for keyword, value in vars(self).items()}
 
     def of_the_game(self) -> "Config":
-        """Return the configuration without what says only how the game is seen."""
-        names = [field.name for field in fields(self) if field.name not in _SEEN]
-        return Config(**{name: getattr(self, name) for name in names})
+        """Return the same game with the default observation."""
+        return Config(**{name: value for name, value in vars(self).items() if name not in _SEEN})
 
 
 def _plain(value: Any) -> Any:
@@ -159,12 +169,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _boolean(name: str, value: object) -> None:
-    if not isinstance(value, bool | np.bool_):
-        raise TypeError(f"{name} must be True or False; got {value!r}")
-
-
-def _levels(value: object) -> None:
+def _check_levels(value: object) -> None:
     if isinstance(value, range) or (isinstance(value, str) and value):
         return
     if isinstance(value, str) or not isinstance(value, Sequence) or not value:
@@ -175,3 +180,24 @@ def _levels(value: object) -> None:
     for item in value:
         if not isinstance(item, str):
             raise TypeError(f"levels must hold names or paths as text; got {item!r}")
+
+
+def _describe_keywords() -> str:
+    """Return the part of `Config`'s docstring that its fields give."""
+    lines = ["Args:"]
+    for keyword in fields(Config):
+        words = (f"``{word!r}``: {text}" for word, text in keyword.metadata["words"].items())
+        meaning = ". ".join([keyword.metadata["meaning"], "; ".join(words)]).removesuffix(" ")
+        text = f"{keyword.name}: {meaning.removesuffix('.')}."
+        lines += textwrap.wrap(text, 92, initial_indent="    ", subsequent_indent=" " * 8)
+    lines += [
+        "",
+        "Raises:",
+        "    ValueError: a value is out of range; the message says which, and what is legal.",
+        "    TypeError: a value has the wrong type.",
+    ]
+    return "\n".join(lines)
+
+
+# For `help` and the reference pages.
+Config.__doc__ = f"{Config.__doc__}\n\n{_describe_keywords()}"

@@ -1,4 +1,4 @@
-"""What the single and the vector environment share: spaces, commands, metadata, checks."""
+"""What the single and the vector environment share: action space, metadata and checks."""
 
 from difflib import get_close_matches
 from typing import Any
@@ -14,7 +14,7 @@ from .rules import TICKS_PER_SECOND
 RENDER_MODES = ("rgb_array", "human")
 METADATA: dict[str, Any] = {
     "render_modes": list(RENDER_MODES),
-    # At the default frame skip of 4; `render_fps` of an instance follows its own frame skip.
+    # At the default frame skip of 4; an instance has its own, see `instance_metadata`.
     "render_fps": TICKS_PER_SECOND // 4,
 }
 
@@ -29,18 +29,18 @@ def action_space(config: Config) -> spaces.Space[Any]:
 
 
 def instance_metadata(config: Config) -> dict[str, Any]:
-    """Return an environment's metadata, its frames a second according to its frame skip."""
+    """Return an environment's metadata; frames per second follow from its frame skip."""
     return METADATA | {"render_fps": max(1, TICKS_PER_SECOND // config.frame_skip)}
 
 
 def check_render_mode(render_mode: str | None, legal: tuple[str, ...]) -> None:
-    """Refuse an unknown render mode with a ValueError."""
+    """Raise a ValueError if a render mode is unknown."""
     if render_mode is not None and render_mode not in legal:
         raise ValueError(f"render_mode must be None or one of {legal}; got {render_mode!r}")
 
 
 def check_options(options: dict[str, Any] | None) -> None:
-    """Refuse unknown reset options with a ValueError."""
+    """Raise a ValueError if a reset option is unknown."""
     known = (*START_OPTIONS, "reset_mask")
     unknown = sorted(map(str, set(options or {}) - set(known)))
     if unknown:

@@ -1,12 +1,12 @@
-"""The rules' numbers, each with its unit.
+"""The numbers of the rules, each with its unit.
 
-Lengths are in brick widths, times in ticks of 1/60 s, y points up, and the origin is the field's
-lower left corner. What a user may tune travels in a record (`rulebook.Rules`), for Numba freezes
-globals.
+Lengths are in brick widths, times in ticks of 1/60 s. y points up, and the origin is the field's
+lower left corner. Numbers that a user may change are in a record (`rulebook.Rules`), because Numba
+freezes globals.
 """
 
-# To be raised with every change after which a game may take another course: recorded games and
-# snapshots of other versions are refused.
+# Raise this with every change after which a game may take another course: replays and snapshots of
+# other versions are refused.
 RULES_VERSION = 1
 
 TICKS_PER_SECOND = 60
@@ -26,7 +26,7 @@ BALL_RADIUS = 0.125
 BALL_SPEED = 0.176  # per tick, at speed stage 0
 SPEED_STAGE_MIN = -1
 SPEED_STAGE_MAX = 7
-# Brick hits since the serve after which the speed stage rises by one.
+# Numbers of brick hits since the serve after which the speed stage rises by one.
 SPEED_STAGE_HITS = (30, 55, 80, 105, 130, 150, 165)
 MAX_BALLS = 3
 
@@ -37,21 +37,21 @@ PADDLE_TOP = 2.0
 PADDLE_Y = PADDLE_TOP - PADDLE_THICKNESS / 2
 PADDLE_SPEED = 0.19  # per tick
 
-SERVE_TICKS = 60  # then the ball serves itself
+SERVE_TICKS = 60  # after these the ball serves itself
 SERVE_ANGLE_MIN = 20.0  # degrees from the vertical
 SERVE_ANGLE_MAX = 40.0
 DEFLECTION_MIN = 10.0  # degrees from the vertical, at the paddle's middle
 DEFLECTION_RANGE = 53.0  # degrees more at the paddle's ends
-CATCH_TICKS = 120  # then a caught ball is released
-FLAT_ANGLE = 10.0  # degrees: no flight is flatter than this after a bounce
+CATCH_TICKS = 120  # after these a caught ball is released
+FLAT_ANGLE = 10.0  # degrees from the horizontal: after a bounce a ball flies at least so steeply
 
-# A ball that bounces this often without damage or paddle contact is turned by a random angle.
+# A ball that bounces so often without damage or paddle contact is turned by a random angle.
 LOOP_BOUNCES = 64
 LOOP_TURN_MIN = 10.0  # degrees
 LOOP_TURN_MAX = 20.0
 
 IDLE_TICKS = 3600  # without damage to a brick: the episode is truncated
-# More hits of one ball in one tick than the rules' fastest ball can make in a cluttered field.
+# More hits of one ball in one tick than the fastest ball of the rules can make in a full field.
 HITS_PER_TICK = 64
 
 EXTRA_LIFE_FIRST = 20_000  # points
@@ -65,9 +65,9 @@ GOLD = 10
 BRICK_LETTERS = ".wocgrbmySX"
 COLOUR_POINTS = (50, 60, 70, 80, 90, 100, 110, 120)
 SILVER_POINTS = 50  # times the round's number
-UNBREAKABLE = 255  # the hits left of a golden brick, for ever
+UNBREAKABLE = 255  # the hits left of a golden brick, always
 
-# Deflection by the paddle.
+# How the paddle deflects a ball.
 ANGLE = 0
 ZONES6 = 1
 PHYSICAL = 2
@@ -80,7 +80,7 @@ SCORE = 1
 SPARSE = 2
 REWARDS = {"progress": PROGRESS, "score": SCORE, "sparse": SPARSE}
 
-# Capsules, by their letters. The first three are powers, of which there is one at a time.
+# Capsules, by their letters. The first three give powers; the player has one power at a time.
 NO_CAPSULE = 0
 CATCH = 1
 ENLARGE = 2
@@ -98,7 +98,7 @@ CAPSULE_SPEED = 1 / 16  # per tick, downward
 CAPSULE_WIDTH = 0.8
 CAPSULE_HEIGHT = 0.375
 CAPSULE_POINTS = 1000
-# Of 256 capsules so many are break, and as many player; the others' weights share the rest.
+# The probability of break, and of player. The weights of the others share the rest.
 RARE_WEIGHT = 3 / 256
 DISRUPT_WEIGHT = 3 / 8
 ENLARGE_WEIGHT = 2 / 8
@@ -112,37 +112,37 @@ BEAM_TICKS = 15  # between shots
 BEAM_SPEED = 0.5  # per tick, upward
 BEAM_WIDTH = 0.125
 BEAM_HEIGHT = 0.5
-BEAM_PLACE = 0.6  # of half the paddle's width, where its two beams start
-# A shot is two beams, and the longest flight lasts 24 ticks: two shots at once.
+BEAM_PLACE = 0.6  # the two beams start so far from the paddle's middle, in half widths
+# A shot is two beams, and flies for at most 24 ticks: there are at most two shots at once.
 MAX_BEAMS = 4
 
 MAX_ENEMIES = 3
 ENEMY_KINDS = 4
 ENEMY_POINTS = 100
-ENEMY_TICKS_MIN = 240  # between two that come in
+ENEMY_TICKS_MIN = 240  # from one enemy to the next
 ENEMY_TICKS_MAX = 600
 GATES = 2
-GATE_X = (2.75, 8.25)  # where the gates in the ceiling are
-GATE_TICKS = 40  # a gate opens so long before an enemy comes in
+GATE_X = (2.75, 8.25)  # the middles of the gates in the ceiling
+GATE_TICKS = 40  # a gate opens so long before an enemy comes
 ENEMY_SPEED = 0.03  # per tick, drifting
-CIRCLE_HEIGHT = 3.5  # an enemy that has drifted down to here circles; all bricks are above it
+CIRCLE_HEIGHT = 3.5  # an enemy drifts down to this y and then circles; all bricks are above
 CIRCLE_SPEED = 0.05  # per tick
 CIRCLE_RADIUS = 0.5
-CIRCLE_TICKS = 126  # about two turns; then it dives at the paddle
+CIRCLE_TICKS = 126  # about two turns; then the enemy dives at the paddle
 DIVE_SPEED = 0.1  # per tick
-# An enemy stops so far from what bars its way: if it touched bricks, it would be caught at each
-# seam between two of them by a rounding error.
+# An enemy stops so far from an obstacle. If it touched bricks, a rounding error would hold it at
+# each seam between two bricks.
 CLEARANCE = 1 / 1024
 
 BOSS_X = 5.5
 BOSS_Y = 10.0
 BOSS_HITS = 16
-BOSS_POINTS = 1000  # each hit
+BOSS_POINTS = 1000  # per hit
 MAX_SHARDS = 4
-SHARD_TICKS = 90  # between two that the boss throws
+SHARD_TICKS = 90  # from one shard to the next
 SHARD_SPEED = 0.08  # per tick
 
-# Generated rounds get harder from round to round by this much (`difficulty` is in [0, 1]) ...
+# From round to round the difficulty of generated levels, in [0, 1], rises by this ...
 DIFFICULTY_STEP = 0.05
-# ... from this on, after the named rounds.
+# ... and begins here after the campaign.
 DIFFICULTY_AFTER_CAMPAIGN = 0.5

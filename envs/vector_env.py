@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from .batch.batch import Autoreset, Batch
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
+from .batch.stepping import tabulate_outcomes
 from .checks import check_integer
 from .config import Config
 from .interface import action_space, check_options, check_render_mode, instance_metadata
 from .levels.generator import MAX_SEED
-from .state import INFO_FIELDS
+from .state import INFO_FIELDS, Worlds
 
 if TYPE_CHECKING:
     from .batch.recorder import Recorder
@@ -39,8 +40,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             ``"Disabled"``).
         copy: whether `reset` and `step` return fresh observations. With False they return views of
             the same memory each time, which a later step overwrites.
-        threads: how many threads step the worlds at the most; None lets their number decide.
-            It changes no bit of the results.
+        threads: the largest number of threads that step the worlds; None lets the number of
+            worlds decide. It changes no bit of the results.
         **keywords: the rules and the interface, see `Config`.
 
     Raises:
@@ -140,10 +141,20 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         batch = self._batch
         return tuple(draw_world(batch.worlds, batch.rules, index) for index in range(self.num_envs))
 
+    @property
+    def state(self) -> Worlds:
+        """The state of each game, NumPy records [n]: a read-only view that shows the present.
+
+        Their fields are those of `arkanoid.envs.state.World`, for example
+        ``env.state["paddle_x"]``, float64 [n], or ``env.state[3].lives``.
+        """
+        return self._batch.state
+
     def snapshot(self, world: int | None = None) -> bytes:
         """Return the whole state of all worlds, or of one, to go on from with `restore`.
 
-        Random numbers, what observations remember and worlds that wait for their reset are in it.
+        It includes random generators, earlier pictures that observations show, and whether a world
+        waits for its reset.
 
         Args:
             world: its index; None: all of them.
@@ -176,8 +187,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         Args:
             snapshot: of one world: a single environment's, or ``snapshot(world)``.
-            seed: seeds world ``i``'s random numbers from here on with ``seed + i``. None: all have
-                the same ones ahead, so that a planner sees what luck will bring.
+            seed: seeds world ``i``'s random numbers from here on with ``seed + i``. None: all worlds
+                will have the same ones, so that a planner sees what chance will bring.
 
         Raises:
             TypeError, ValueError: as `restore`.
@@ -203,12 +214,12 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
-        # Gymnasium before 1.3 closes whatever is deleted: also what refused its keywords.
+        # Gymnasium before 1.3 also closes an environment whose `__init__` has failed.
         if hasattr(self, "_batch"):
             self._batch.close()
 
     def _seed(self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]) -> None:
-        """Seed the masked worlds; one never seeded gets a seed from the system's entropy."""
+        """Seed the masked worlds; one that was never seeded gets a random seed."""
         if seed is None:
             seeds: Sequence[int | None] = [None] * self.num_envs
         elif isinstance(seed, int | np.integer):
@@ -239,13 +250,15 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         return observations.copy() if self.copy else observations
 
     def _infos(self, outcomes: Any, mask: NDArray[np.bool_]) -> dict[str, Any]:
-        """Return each outcome's field and the mask of the worlds that have it."""
-        infos: dict[str, Any] = {}
-        everywhere = mask.all()
+        """Return what outcomes tell, and for each key the mask of the worlds that have it."""
+        table = np.empty((len(INFO_FIELDS), self.num_envs), np.int64)
+        tabulate_outcomes(outcomes, table)
+        if not mask.all():
+            table *= mask
         owners = mask.copy()
-        for key, field in INFO_FIELDS.items():
-            values = outcomes[field]
-            infos[key] = values.copy() if everywhere else np.where(mask, values, 0)
+        infos: dict[str, Any] = {}
+        for key, values in zip(INFO_FIELDS, table, strict=True):
+            infos[key] = values
             infos[f"_{key}"] = owners
         return infos
 

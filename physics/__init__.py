@@ -1,9 +1,9 @@
 """The collision engine. It knows no game.
 
-Colliders are shapes, bodies (or any objects that have a collider and a position) are shapes
-somewhere. `detect`, `contact`, `relax`, `bounce`, `resolve`, `collide` and `time_of_impact` answer
-and act on a pair of them. A `World` steps many of them from impact to impact, a `WorldBatch` many
-worlds.
+A collider is a shape. A body, or any object with a collider and a position, is a shape at a
+position. `detect`, `contact` and `time_of_impact` answer questions about a pair of bodies; `relax`,
+`bounce`, `resolve` and `collide` change them. A `World` steps many bodies from impact to impact, a
+`WorldBatch` many worlds.
 """
 
 from .body import Body

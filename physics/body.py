@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import inverse_mass, not_negative, vector
 from .shapes.colliders import Collider
-from .validation import inverse_mass, not_negative, vector
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -15,15 +15,15 @@ class Body:
     """A collider somewhere, perhaps moving, perhaps with a mass.
 
     Args:
-        collider: its shape, in body coordinates.
-        position: (x, y), where the collider's origin is.
+        collider: the shape, in body coordinates.
+        position: (x, y) of the collider's origin.
         velocity: (x, y), the change of position in one unit of time.
-        mass: greater than 0; None for a static body, which nothing moves. (It may move by its own
-            velocity: what bounces off it notices.)
-        restitution: the share of the approaching speed that a bounce gives back, times the other
-            body's; not negative.
+        mass: greater than 0; None for a static body, which collisions never move. (It may still
+            move by its own velocity, which bounces take into account.)
+        restitution: the share of the approaching speed that a bounce gives back, multiplied by
+            the other body's; not negative.
 
-    Position and velocity are float64 arrays of two; values assigned to them are copied and checked.
+    Position and velocity are float64 [2]; assigned values are checked and copied.
     The operations of this package change a body in place.
     """
 

@@ -1,10 +1,10 @@
-"""What can go wrong between two bodies."""
+"""The engine's own error and warning."""
 
 
 class InseparableError(ValueError):
     """No finite translation separates two regions, so they cannot be moved apart.
 
-    Two half-planes that are not back to back, for instance: each reaches around the other.
+    Two half-planes that are not back to back, for instance.
     """
 
     def __init__(self, a: object, b: object) -> None:
@@ -16,9 +16,9 @@ class InseparableError(ValueError):
         self.b = b
 
     def __reduce__(self) -> tuple[type["InseparableError"], tuple[object, object]]:
-        """Let the error be pickled, across processes for instance."""
+        """Support pickling, to another process for instance."""
         return type(self), (self.a, self.b)
 
 
 class HitLimitWarning(RuntimeWarning):
-    """A body met so much in one step of a world that it stayed where it was for the rest of it."""
+    """A body used up its hits of one step, and stayed where it was for the rest of the step."""

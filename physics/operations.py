@@ -1,7 +1,7 @@
 """The operations on a pair of objects: detection, contact, relaxation, bounce, time of impact.
 
-Each reads what it needs from any objects that have it (see `protocols`), calls the kernels that the
-simulation uses, and assigns what changed.
+Each works on any objects that have what it needs (see `protocols`). It calls the same kernels as
+the simulation, and assigns what has changed.
 """
 
 import math
@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import duration as checked_duration
+from .arguments import inverse_mass, not_negative, vector
 from .body import FloatArray
 from .errors import InseparableError
 from .pairs.response import bounce_velocities, shares
@@ -18,8 +20,6 @@ from .pairs.table import contact_between, impact_between, overlap_between
 from .protocols import Collidable, Dynamic, Moving
 from .shapes.colliders import Collider
 from .shapes.table import ShapeTable, shape_table
-from .validation import duration as checked_duration
-from .validation import inverse_mass, not_negative, vector
 
 
 class Contact(NamedTuple):
@@ -28,8 +28,8 @@ class Contact(NamedTuple):
     Attributes:
         normal: unit vector from a to b, along the shortest translation that separates them.
         depth: the length of that translation, inf if no finite one separates.
-        point: halfway between the surfaces that part along the normal; after separation a's
-            surface is ``depth / 2`` further along it, b's as much behind.
+        point: halfway between the surfaces that separate along the normal: a's surface is
+            ``depth / 2`` ahead of it along the normal, b's ``depth / 2`` behind.
     """
 
     normal: FloatArray
@@ -41,7 +41,7 @@ class Impact(NamedTuple):
     """When two regions touch.
 
     Attributes:
-        time: from now, in units of the velocities'.
+        time: from now, in the unit of time of the velocities.
         normal: unit vector from a to b.
     """
 
@@ -71,17 +71,17 @@ def contact(a: Collidable, b: Collidable) -> Contact | None:
 
 
 def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> Impact | None:
-    """Return when and how a and b, flying on with their velocities, begin to overlap.
+    """Return when and how a and b, moving with their velocities, begin to overlap.
 
     Args:
-        a: an object with a velocity; without one it rests.
-        b: the other one.
-        duration: how long to look ahead, perhaps for ever.
+        a: an object; without a velocity it does not move.
+        b: the other object.
+        duration: how long to look ahead, perhaps infinitely.
 
     Returns:
-        The first touch, None if there is none within the duration, or the two merely slide along
-        each other, graze, or separate. If they overlap already, time is 0 and the normal the
-        contact's.
+        The first touch. None if there is none within the duration, or if the two merely slide along
+        each other, graze, or separate. If they overlap already, the time is 0, and the normal is
+        the contact's.
     """
     horizon = checked_duration("duration", duration)
     shapes, edges, dx, dy = _pair(a, b)
@@ -106,7 +106,7 @@ def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> 
 def relax(a: Collidable, b: Collidable, contact: Contact) -> None:
     """Move a and b apart along a contact's normal, by its depth, in shares reciprocal to mass.
 
-    An object without mass does not move; if neither has one, nothing does.
+    An object without mass does not move.
 
     Raises:
         InseparableError: if the contact's depth is infinite.
@@ -128,9 +128,9 @@ def bounce(
 
     Args:
         a: the body from which the normal points; at least one of the two should have a mass.
-        b: the body to which it points. One without a velocity rests.
-        normal: (x, y), not null; its length does not matter.
-        restitution: e, not negative; if None, the product of the two bodies' own.
+        b: the body to which it points; without a velocity it does not move.
+        normal: (x, y), of any length but 0.
+        restitution: e, not negative; if None, the product of the two bodies' values.
 
     Returns:
         The impulse ``J = -(e + 1) (v1 - v2) / (1/m1 + 1/m2)`` with speeds along the normal: a's
@@ -203,7 +203,7 @@ def _pair_table(a: Collider, b: Collider) -> ShapeTable:
 
 
 def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
-    """Return (shapes, edges, dx, dy) of two objects: their records and b's place seen from a."""
+    """Return (shapes, edges, dx, dy) of two objects: their records, and b's position from a."""
     try:
         shapes, edges = _pair_table(a.collider, b.collider)
         ax, ay = a.position
@@ -220,7 +220,7 @@ def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
 
 
 def _check(item: Any) -> None:
-    """Raise the error that says what an object lacks to be detected, if it lacks something."""
+    """Raise an error that says what an object lacks to be detected, if it lacks anything."""
     for name in ("collider", "position"):
         if not hasattr(item, name):
             raise TypeError(f"to collide, an object needs a {name}; {item!r} has none")
@@ -230,7 +230,7 @@ def _check(item: Any) -> None:
 
 
 def _velocity(item: Any) -> tuple[float, float]:
-    """Return an object's velocity, null if it has none."""
+    """Return an object's velocity, zero if it has none."""
     velocity = getattr(item, "velocity", None)
     if velocity is None:
         return 0.0, 0.0
@@ -243,7 +243,7 @@ def _inverse_mass(name: str, item: Any) -> float:
 
 
 def _restitution(item: Any) -> float:
-    """Return an object's restitution, 1 if it names none."""
+    """Return an object's restitution, 1 if it has none."""
     return not_negative("restitution", getattr(item, "restitution", 1.0))
 
 
@@ -254,7 +254,7 @@ def _shift(item: Any, distance: float, x: float, y: float) -> None:
 
 
 def _assign(name: str, item: Any, x: float, y: float) -> None:
-    """Assign a position or velocity as the type that it was: array, list, or else tuple."""
+    """Assign a position or velocity of the same type as before: array, list, or else tuple."""
     old = getattr(item, name)
     if isinstance(old, np.ndarray):
         setattr(item, name, np.array((x, y), np.float64))

@@ -1,8 +1,8 @@
-"""What an object needs to take part. Nothing is inherited or registered: having it is enough.
+"""What an object needs to take part. It need not inherit or register anything.
 
 Positions and velocities are two numbers: a tuple, a list or an array. The engine reads them, and
-where it changes one it assigns a new value of the same type (an array stays an array, of float64;
-a list a list; anything else becomes a tuple of floats). It never writes into the old value.
+where it changes one it assigns a new value of the same type: a float64 array for an array, a list
+for a list, a tuple of floats for anything else. It never writes into the old value.
 """
 
 from typing import Any, Protocol, runtime_checkable
@@ -12,7 +12,7 @@ from .shapes.colliders import Collider
 
 @runtime_checkable
 class Collidable(Protocol):
-    """Can be detected: it has a shape and a place. Without a ``mass`` it is never moved."""
+    """It has a shape and a position, and can be detected."""
 
     @property
     def collider(self) -> Collider:
@@ -26,10 +26,10 @@ class Collidable(Protocol):
 
 @runtime_checkable
 class Moving(Collidable, Protocol):
-    """Can be bounced off, and its time of impact found: it moves.
+    """It has a velocity, too: it can bounce, and have a time of impact.
 
-    An optional ``restitution`` says how much of the approaching speed a bounce gives back (1 if it
-    is missing, all of it).
+    An optional ``restitution`` says how much of the approaching speed a bounce gives back; all of
+    it, 1, if it is missing.
     """
 
     @property
@@ -39,8 +39,8 @@ class Moving(Collidable, Protocol):
 
 @runtime_checkable
 class Dynamic(Moving, Protocol):
-    """Can be pushed: collisions change its position and velocity, if its mass is not None."""
+    """It has a mass, too: collisions change its position and velocity, if the mass is not None."""
 
     @property
     def mass(self) -> float | None:
-        """Greater than 0. None means static: it never gives way."""
+        """Greater than 0; None for a static object, which collisions never move."""

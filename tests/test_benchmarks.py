@@ -1,28 +1,19 @@
-"""The benchmarks run, and in the scenes of the one of the engine nothing is lost and no energy."""
+"""The benchmarks run. In the scenes of the engine's benchmark nothing is lost, nor any energy."""
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from helpers.processes import run_python
+from helpers.repository import TESTS
 
-FOLDER = Path(__file__).parent / "benchmarks"
+FOLDER = TESTS / "benchmarks"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
 
 
 def run(script: Path, *arguments: str) -> str:
-    """Run a benchmark as a user would; return what it prints."""
-    done = subprocess.run(
-        [sys.executable, str(script), *arguments],
-        capture_output=True,
-        text=True,
-        timeout=500,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    """Run a benchmark as a user would; return its output."""
+    return run_python(script, *arguments, warnings="default", timeout=500).stdout
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
@@ -31,7 +22,7 @@ def test_benchmark_has_help(script: Path) -> None:
 
 
 def test_engine_loses_nothing_in_the_scenes_of_its_benchmark() -> None:
-    """What is due stands in the rows' labels, or is said here; speeds are the machine's affair."""
+    """The rows' labels, or the lines below, say which values are right. Speeds are not checked."""
     table = run(FOLDER / "engine.py", "--quick", "--only-ours")
     rows = re.findall(r"^  +(\S.*?)  +([\d.,e+-]+)$", table, re.MULTILINE)
     checked = 0
@@ -54,8 +45,8 @@ def test_engine_loses_nothing_in_the_scenes_of_its_benchmark() -> None:
     assert checked == 14, table
 
 
-def test_throughput_is_measured_of_everything_and_goals_are_judged_by_what_is_printed() -> None:
-    """Whether goals are met is the machine's affair, but not whether that is said truly."""
+def test_throughput_measures_everything_and_judges_goals_by_the_printed_figures() -> None:
+    """Whether the machine reaches a goal is not checked, only that the table says so truly."""
     table = run(FOLDER / "throughput.py", "--quick", "--only-ours")
     rows = re.findall(r"^  [a-z ]  (\S.*?)  +([\d,]+)(?:   (.*))?$", table, re.MULTILINE)
     assert len(rows) == 13 + 6, table
@@ -68,7 +59,7 @@ def test_throughput_is_measured_of_everything_and_goals_are_judged_by_what_is_pr
             share = re.match(r"([\d.]+) x ", said)
             reached = float(share[1]) if share else rate
             wanted = float(goal[1].replace(",", ""))
-            # Printed with two decimals: what lies within the rounding may be judged either way.
+            # Two decimals are printed: within their rounding either judgement is right.
             if abs(reached - wanted) > 0.006:
                 assert (goal[2] == "met") == (reached > wanted), label
             judged += 1

@@ -1,22 +1,21 @@
-"""What `docs/extending.md` tells to change, done to a copy of the sources, works as it says."""
+"""The changes that `docs/extending.md` describes work, made to a copy of the sources."""
 
-import os
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from helpers.processes import run, run_python
+from helpers.repository import DOCS, ROOT, TESTS
 
-ROOT = Path(__file__).resolve().parent.parent
-PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "extending.md").read_text(encoding="utf-8")
 PACKAGES = ("configs", "envs", "physics")
-PROGRAMS = sorted((ROOT / "tests" / "extending").glob("*.py"))
+PROGRAMS = sorted((TESTS / "extending").glob("*.py"))
 
 
 def changes(page: str) -> list[tuple[str, str, str]]:
-    """Return (file, the lines as they are, the lines as they are to be) of each block."""
+    """Return (file, old lines, new lines) of each block."""
     found = []
     for file, block in re.findall(r"^```diff\ndiff (\S+)\n(.*?)^```$", page, re.M | re.S):
         lines = block.splitlines(keepends=True)
@@ -27,7 +26,7 @@ def changes(page: str) -> list[tuple[str, str, str]]:
 
 
 def change(file: Path, old: str, new: str) -> None:
-    """Put lines in the place of others, which must be there once; make a file for new ones."""
+    """Replace lines, which the file must have exactly once; if there are none, create the file."""
     text = file.read_text(encoding="utf-8") if old else ""
     assert file.exists() == bool(old)
     assert not old or text.count(old) == 1, f"{file.name} does not have once:\n{old}"
@@ -49,7 +48,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_block_is_what_was_and_what_is_to_be(tmp_path: Path) -> None:
+def test_a_block_gives_old_and_new_lines(tmp_path: Path) -> None:
     page = "Text\n```diff\ndiff a.py\n one\n-two\n+three\n+four\n five\n```\n"
     ((name, old, new),) = changes(page)
     assert (name, old, new) == ("a.py", "one\ntwo\nfive\n", "one\nthree\nfour\nfive\n")
@@ -66,34 +65,16 @@ def test_the_page_has_all_of_its_changes() -> None:
 
 
 def test_what_was_added_works(changed: Path) -> None:
-    """All in one test, so that the copy's kernels are compiled once, whoever runs it."""
+    """All in one test, so that one process compiles the copy's kernels, also under xdist."""
     assert [program.stem for program in PROGRAMS] == ["capsule", "reward", "shape"]
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(changed),
-        "ARKANOID_CACHE_DIR": str(changed / "cache"),
-    }
+    changes = {"PYTHONPATH": str(changed), "ARKANOID_CACHE_DIR": str(changed / "cache")}
     for program in PROGRAMS:
-        done = subprocess.run(
-            [sys.executable, "-W", "error", program],
-            cwd=changed,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
-        assert done.returncode == 0, done.stderr
+        run_python(program, cwd=changed, changes=changes)
 
 
-def test_what_was_changed_is_in_format(changed: Path) -> None:
-    """A recipe that leaves a line too long would be refused by `make check`."""
+def test_what_was_changed_is_formatted(changed: Path) -> None:
+    """`make check` would refuse a recipe that leaves a line too long."""
     files = sorted({str(changed / "arkanoid" / file) for file, *_ in changes(PAGE)})
-    settings = ["--config", str(ROOT / "pyproject.toml")]
     for command in (["check"], ["format", "--check"]):
-        done = subprocess.run(
-            [sys.executable, "-m", "ruff", *command, *settings, *files],
-            cwd=ROOT,
-            capture_output=True,
-            text=True,
-        )
-        assert done.returncode == 0, done.stdout
+        settings = ["--config", ROOT / "pyproject.toml"]
+        run(sys.executable, "-m", "ruff", *command, *settings, *files, cwd=ROOT)

@@ -1,91 +1,223 @@
-"""Which package may know which, and how little ``import arkanoid`` costs.
+"""How the code is divided: who may import whom, and how large folders and files may become.
 
-Read from the sources' syntax trees: what is imported inside a function counts, too.
+The tests read the sources' syntax trees. So an import inside a function counts, and so does one for
+type checkers only.
 """
 
 import ast
-import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
+from helpers.processes import run_program
+from helpers.repository import ROOT, TESTS
 
-ROOT = Path(__file__).resolve().parent.parent
-# Each package, and the packages of ours that it may import.
+# The packages, and the other packages that each may import.
 MAY_IMPORT = {
     "physics": set[str](),
     "configs": set[str](),
     "envs": {"physics", "configs"},
     "agents": {"envs", "configs"},
 }
-FILES = [file for package in MAY_IMPORT for file in sorted((ROOT / package).rglob("*.py"))]
-HEAVY = {"torch", "stable_baselines3", "pygame", "matplotlib", "tensorboard", "imageio", "rich"}
+# Within a package, a room (a subpackage, or a file at the top) imports only from rooms in its own
+# line or in lines below. The package's own `__init__.py` may import all of them.
+ORDER = {
+    "physics": """
+        world
+        operations
+        body protocols
+        pairs
+        shapes
+        arguments
+        kernels tolerances errors
+    """,
+    "configs": "",
+    "envs": """
+        registration
+        arkanoid_env vector_env
+        play
+        interface
+        batch
+        observe
+        draw
+        game
+        levels
+        config state actions checks rules
+    """,
+    "agents": """
+        cli
+        commands
+        show
+        learn
+        measure
+        experiment pretrained
+        adapter
+    """,
+}
+FILES = [file for package in ORDER for file in sorted((ROOT / package).rglob("*.py"))]
+HEAVY = {
+    *("torch", "stable_baselines3", "tensorboard", "optuna", "pygame", "matplotlib", "PIL"),
+    *("pydantic", "jinja2", "markdown_it", "tomli_w"),
+}
+MOST_LINES = 400  # of a file
+MOST_FILES = 16  # of code in a folder, not counting `__init__.py`
+Module = tuple[str, ...]  # a dotted path from the top, such as ("arkanoid", "envs", "rules")
 
 
-def named(file: Path) -> Iterator[str]:
-    """Yield the modules that a file's imports name, as dotted paths from the top."""
-    within = ["arkanoid", *file.relative_to(ROOT).parts[:-1]]
+def relative(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+@cache
+def imported(file: Path) -> list[tuple[Module, str]]:
+    """Return (module, name) of all that a file imports; of `import a.b`, ("a", "b") and ""."""
+    found: list[tuple[Module, str]] = []
+    folder = ("arkanoid", *file.relative_to(ROOT).parts[:-1])
     for node in ast.walk(ast.parse(file.read_bytes())):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += [(tuple(alias.name.split(".")), "") for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            base = within[: len(within) + 1 - node.level] if node.level else []
-            module = ".".join(base + ([node.module] if node.module else []))
-            yield from (f"{module}.{alias.name}" for alias in node.names)
+            base = folder[: len(folder) + 1 - node.level] if node.level else ()
+            module = (*base, *(node.module.split(".") if node.module else ()))
+            found += [(module, alias.name) for alias in node.names]
+    return found
 
 
-def test_every_package_has_its_rule() -> None:
-    packages = {file.parent.name for file in ROOT.glob("*/__init__.py")}
-    assert packages == set(MAY_IMPORT)
+def source(module: Module) -> Path | None:
+    """Return the file of a module of ours."""
+    path = ROOT.joinpath(*module[1:])
+    places = (path.with_suffix(".py"), path / "__init__.py")
+    return next((place for place in places if place.exists()), None)
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(ROOT)))
-def test_imports_go_one_way(file: Path) -> None:
-    own = file.relative_to(ROOT).parts[0]
-    ours = {name.split(".")[1] for name in named(file) if name.startswith("arkanoid.")}
-    assert ours - {own, "version", "__version__"} <= MAY_IMPORT[own]
+def our_imports(file: Path) -> Iterator[tuple[Module, str, Path]]:
+    """Yield (module, name, imported file) of all that is imported of ours but the version."""
+    for module, name in imported(file):
+        if module[0] == "arkanoid" and name != "__version__":
+            target = source((*module, name)) or source(module)
+            assert target is not None, f"{relative(file)} imports {'.'.join(module)}.{name}"
+            yield module, name, target
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(ROOT)))
-def test_imports_inside_the_package_are_relative(file: Path) -> None:
-    """So that editors and type checkers find the code in a folder of any name."""
-    absolute = [
-        node.lineno
+def room(file: Path) -> tuple[str, str]:
+    """Return the package of a file, and its room there; the room of an `__init__.py` is ""."""
+    package, *rest = file.relative_to(ROOT).with_suffix("").parts
+    return package, rest[0] if rest and rest[0] != "__init__" else ""
+
+
+def test_every_room_has_its_place_in_the_order() -> None:
+    assert {file.parent.name for file in ROOT.glob("*/__init__.py")} == set(ORDER)
+    rooms = {room(file) for file in FILES}
+    ordered = {(package, name) for package, lines in ORDER.items() for name in lines.split()}
+    assert rooms - {(package, "") for package in ORDER} == ordered
+
+
+def test_imports_go_one_way() -> None:
+    wrong = []
+    for file in FILES:
+        package, own = room(file)
+        lines = [line.split() for line in ORDER[package].splitlines()]
+        place = next((place for place, line in enumerate(lines) if own in line), 0)
+        allowed = {own, *(name for line in lines[place:] for name in line)}
+        for _, _, target in our_imports(file):
+            other, name = room(target)
+            fits = name in allowed if other == package else other in MAY_IMPORT[package]
+            if not fits:
+                wrong.append(f"{relative(file)} imports {relative(target)}")
+    assert wrong == []
+
+
+def test_only_public_names_of_other_rooms_are_imported() -> None:
+    assert [
+        f"{relative(file)} imports {name} of {'.'.join(module)}"
+        for file in FILES
+        for module, name, target in our_imports(file)
+        if room(target) != room(file) and any(part.startswith("_") for part in (*module, name))
+    ] == []
+
+
+def test_no_circle_of_files() -> None:
+    """Files in a circle cannot be understood, tested or moved one at a time."""
+    graph = {file: {target for *_, target in our_imports(file)} for file in FILES}
+    assert circles(graph) == []
+
+
+def circles(graph: dict[Path, set[Path]]) -> list[set[str]]:
+    """Return the strongly connected components of more than one file."""
+    reached: dict[Path, set[Path]] = {}
+    for start in graph:
+        waiting, seen = [start], set[Path]()
+        while waiting:
+            new = graph.get(waiting.pop(), set()) - seen
+            seen |= new
+            waiting += new
+        reached[start] = seen
+    found = []
+    for file in graph:
+        circle = {other for other in reached[file] if file in reached.get(other, ())}
+        if circle and file == min(circle):
+            found.append({relative(other) for other in circle})
+    return found
+
+
+def test_a_circle_is_noticed() -> None:
+    a, b, c, d = (ROOT / name for name in ("a.py", "b.py", "c.py", "d.py"))
+    assert circles({a: {b}, b: {c, d}, c: {d}, d: set()}) == []
+    assert circles({a: {b}, b: {c}, c: {b, d}, d: set()}) == [{"b.py", "c.py"}]
+
+
+def test_imports_inside_the_package_are_relative() -> None:
+    """So editors and type checkers find the code in a folder of any name."""
+    assert [
+        f"{relative(file)}, line {node.lineno}"
+        for file in FILES
         for node in ast.walk(ast.parse(file.read_bytes()))
-        if (
-            (isinstance(node, ast.ImportFrom) and not node.level and node.module)
-            and node.module.split(".")[0] == "arkanoid"
-        )
-        or (
-            isinstance(node, ast.Import)
-            and any(alias.name.split(".")[0] == "arkanoid" for alias in node.names)
-        )
-    ]
-    assert absolute == []
+        if (isinstance(node, ast.ImportFrom) and not node.level and is_ours(node.module or ""))
+        or (isinstance(node, ast.Import) and any(is_ours(alias.name) for alias in node.names))
+    ] == []
 
 
-@pytest.mark.parametrize(
-    "file",
-    [file for file in FILES if file.relative_to(ROOT).parts[0] != "agents"],
-    ids=lambda file: str(file.relative_to(ROOT)),
-)
-def test_engine_and_game_need_no_trainer(file: Path) -> None:
-    """Pygame alone is allowed, inside the function that opens a window (see below)."""
-    assert {name.split(".")[0] for name in named(file)} & (HEAVY - {"pygame"}) == set()
+def is_ours(module: str) -> bool:
+    return module.split(".")[0] == "arkanoid"
+
+
+def test_folders_are_small_and_say_what_they_are() -> None:
+    for folder in sorted({file.parent for file in FILES}):
+        files = [file.name for file in folder.glob("*.py") if file.name != "__init__.py"]
+        assert len(files) <= MOST_FILES, relative(folder)
+        docstring = ast.get_docstring(ast.parse((folder / "__init__.py").read_bytes()))
+        assert docstring, relative(folder)
+
+
+def test_files_are_short() -> None:
+    lines = {
+        relative(file): len(file.read_text(encoding="utf-8").splitlines())
+        for file in [*FILES, *TESTS.rglob("*.py")]
+    }
+    assert {file: length for file, length in lines.items() if length > MOST_LINES} == {}
+
+
+def test_engine_and_game_need_no_trainer() -> None:
+    """Pygame alone is allowed, inside the function that opens a window."""
+    assert [
+        f"{relative(file)} imports {module[0]}"
+        for file in FILES
+        for module, _ in imported(file)
+        if room(file)[0] != "agents" and module[0] in HEAVY - {"pygame"}
+    ] == []
 
 
 @pytest.mark.parametrize("statement", ["import arkanoid", "import arkanoid.envs, arkanoid.physics"])
 def test_import_is_light(statement: str) -> None:
-    loaded = python(
-        f"{statement}; import sys; print(*{{name.split('.')[0] for name in sys.modules}})"
-    )
-    assert set(loaded.split()) & HEAVY == set()
+    program = f"{statement}; import sys; print(*{{name.split('.')[0] for name in sys.modules}})"
+    assert set(run_program(program).stdout.split()) & HEAVY == set()
 
 
 def test_registering_twice_is_silent() -> None:
     """Gymnasium warns when an id is registered again, and a test run makes that an error."""
-    before, after = python("""
+    program = """
 import importlib, importlib.util, sys
 import arkanoid
 from gymnasium.envs.registration import registry
@@ -97,24 +229,16 @@ spec = importlib.util.spec_from_file_location(
 sys.modules["house"] = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(sys.modules["house"])
 print(ours())
-""").splitlines()
+"""
+    before, after = run_program(program).stdout.splitlines()
     assert before == after != "[]"
 
 
 def test_pytest_does_not_import_the_root_under_another_name() -> None:
-    """It did, taking the root for a package of tests: see tests/conftest.py."""
+    """It did, because it took the root for a package of tests: see tests/conftest.py."""
     elsewhere = [
         name
         for name, module in list(sys.modules.items())
         if getattr(module, "__file__", None) == str(ROOT / "__init__.py") and name != "arkanoid"
     ]
     assert elsewhere == []
-
-
-def python(program: str) -> str:
-    """Run a program in a new interpreter, warnings being errors, and return what it prints."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", program], capture_output=True, text=True, timeout=120
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout

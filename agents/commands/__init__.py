@@ -1,1 +1,1 @@
-"""The subcommands of `arkanoid`, a module each."""
+"""The subcommands of `arkanoid`, one module for each, named as it; only `cli` uses them."""

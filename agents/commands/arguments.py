@@ -1,10 +1,10 @@
-"""Arguments that several commands take."""
+"""Arguments that several commands take; no command itself."""
 
 import argparse
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """Describe the argument that names a model to ``parser``."""
+    """Add the argument that names a model."""
     parser.add_argument(
         "model",
         metavar="MODEL",
@@ -15,9 +15,9 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def add_level(parser: argparse.ArgumentParser) -> None:
-    """Describe the option that names a level to ``parser``."""
+    """Add the option that names a level."""
     parser.add_argument(
         "--level",
-        help="where the game begins: a round's name, a level file or seeds:N-N; "
+        help="where the game begins: a level's name, a level file or seeds:N-N; "
         "default: as in the training",
     )

@@ -1,4 +1,4 @@
-"""`arkanoid evaluate [MODEL ...]`: how good saved models are, against the baselines."""
+"""`arkanoid evaluate [MODEL ...]`: how good saved models are, compared with the baselines."""
 
 import argparse
 import json
@@ -7,22 +7,20 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ..experiment.errors import SettingsError
 from ..experiment.runs import ModelFile
-from ..experiment.schema import SettingsError
 from ..experiment.settings import Experiment
-
-SUMMARY = "measure trained models against the baselines"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.usage = "%(prog)s [MODEL ...] [--json] [--plots FOLDER] [--key value ...]"
     parser.add_argument(
         "models",
         metavar="MODEL",
         nargs="*",
-        help="folders of runs, or model files in them; runs of one experiment that differ in "
-        "their seeds are measured as one agent; default: the agent that comes with the package",
+        help="folders of runs, or model files in them; runs that differ only in their seeds are "
+        "measured as one agent; default: the agent that comes with the package",
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     parser.add_argument("--plots", metavar="FOLDER", help="draw the results into this folder")
@@ -61,14 +59,14 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 def group_by_experiment(
     models: Sequence[ModelFile], overrides: list[tuple[str, str]]
 ) -> dict[str, list[ModelFile]]:
-    """Return the models by their agents: one agent is what differs in nothing but the seed.
+    """Return the models by agents; models of one agent differ in nothing but their seeds.
 
-    A single agent is called ``agent``, several by their experiments' names. Raises `SettingsError`
-    if they were not trained to play the same game, or one is given twice.
+    A single agent is called ``agent``, several get their experiments' names. Raises `SettingsError`
+    if the models were not trained to play the same game, or if one is given twice.
     """
     for index, model in enumerate(models):
         if model.path in [other.path for other in models[:index]]:
-            raise SettingsError(f"{model.path}: given twice; it counts once only")
+            raise SettingsError(f"{model.path}: given twice; give each model once")
     groups: list[tuple[Experiment, list[ModelFile]]] = []
     for model in models:
         experiment = replace(model.run.experiment(overrides), seed=0, output=".")
@@ -80,10 +78,10 @@ def group_by_experiment(
             groups.append((experiment, [model]))
     first = groups[0][0]
     for experiment, group in groups[1:]:
-        if _game(experiment) != _game(first):
+        if experiment.config != first.config:
             raise SettingsError(
                 f"{group[0].path}: trained with another 'env_id' or 'env' than {models[0].path}; "
-                f"evaluate them one after the other, or change it by --env.KEY VALUE"
+                f"evaluate them one after the other, or let --env.KEY VALUE make them equal"
             )
     if len(groups) == 1:
         return {"agent": groups[0][1]}
@@ -92,7 +90,3 @@ def group_by_experiment(
         taken = sum(name.partition("#")[0] == experiment.name for name in named)
         named[f"{experiment.name}#{taken + 1}" if taken else experiment.name] = group
     return named
-
-
-def _game(experiment: Experiment) -> tuple[object, ...]:
-    return experiment.env_id, experiment.env

@@ -1,28 +1,26 @@
-"""`arkanoid levels`: the named rounds as a list; any level in the terminal or as a PNG."""
+"""`arkanoid levels`: lists the named rounds; draws any level in the terminal or as a PNG."""
 
 import argparse
 import os
 import sys
 
-from ..experiment.schema import SettingsError
-
-SUMMARY = "list the named levels, or draw any level"
+from ..experiment.errors import SettingsError
 
 _EPILOG = """\
-LEVEL is the name of a named round, the path of a level file, or seed:N for a generated level.
+LEVEL is a named round, the path of a level file, or seed:N for a generated level.
 
   arkanoid levels                                   the named rounds
   arkanoid levels spiral                            draws one
   arkanoid levels seed:7 --difficulty 0.8           draws a generated one
-  arkanoid levels spiral > mine.txt                 writes its file, to be changed
-  arkanoid levels mine.txt --png mine.png           draws your own into a picture
+  arkanoid levels spiral > mine.txt                 writes its file, which you can change
+  arkanoid levels mine.txt --png mine.png           draws your own as a picture
   arkanoid play --level mine.txt                    and plays it
 
-In a terminal that has colours a level is drawn in them; elsewhere it is written as its file."""
+A terminal with colours shows a level in them; elsewhere the level's file is printed."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.add_argument("levels", metavar="LEVEL", nargs="*", help="name, file or seed:N")
     parser.add_argument(
         "--difficulty",
@@ -40,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Print or draw; return the exit status."""
-    # With the game come the kernels, and Numba, which is slow to import.
+    # The game imports Numba, which is slow.
     from ...envs.play.gallery import DIFFICULTY, list_levels
 
     difficulty = DIFFICULTY if arguments.difficulty is None else arguments.difficulty
@@ -60,18 +58,18 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
 
 def _print(names: list[str], difficulty: float) -> None:
-    """Draw levels in the terminal, or write them as their files."""
+    """Draw levels in the terminal, or print their files."""
     from ...envs.play.gallery import (
-        LETTERS,
-        find_level,
+        NO_COLOURS,
         level_in_colours,
         level_text,
+        load_or_generate,
         terminal_colours,
     )
 
-    levels = [find_level(name, difficulty) for name in names]
+    levels = [load_or_generate(name, difficulty) for name in names]
     colours = terminal_colours(sys.stdout, os.environ)
-    if colours == LETTERS:
+    if colours == NO_COLOURS:
         print("\n\n".join(map(level_text, levels)))
     else:
         print("\n\n".join(level_in_colours(level, colours) for level in levels))

@@ -1,22 +1,20 @@
-"""`arkanoid play`: the game by hand, in a window; each game is kept as a replay."""
+"""`arkanoid play`: the game by hand, in a window; it saves each game as a replay."""
 
 import argparse
+import itertools
 import secrets
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import gymnasium as gym
 import platformdirs
 
-from ..experiment.schema import SettingsError
+from ..experiment.errors import SettingsError
 
 if TYPE_CHECKING:
     from ...envs.batch.replays import Replay
 
-SUMMARY = "play by hand, in a window"
-
-# The simplest game, as `ArkanoidLite-v0` has it.
-_LITE = {"capsules": False, "enemies": False}
 
 _EPILOG = """\
 keys:
@@ -28,21 +26,21 @@ keys:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.add_argument(
         "--level",
         metavar="LEVEL",
-        help="a named round, from which on the campaign is played; a level file, or seed:N, which "
-        "is played again and again (see: arkanoid levels)",
+        help="a named round, where the campaign begins; or a level file or seed:N, which is played "
+        "again and again (see: arkanoid levels)",
     )
     parser.add_argument(
         "--difficulty",
         type=float,
         metavar="D",
-        help="of generated levels, from 0 to 1 (default: 0.5 for seed:N, else rising)",
+        help="of generated levels, from 0 to 1 (default: 0.5 for seed:N, otherwise rising)",
     )
     parser.add_argument(
-        "--seed", type=int, metavar="N", help="of the random numbers (default: another each time)"
+        "--seed", type=int, metavar="N", help="of the random numbers (default: a new one each time)"
     )
     parser.add_argument("--lite", action="store_true", help="without capsules and enemies")
     parser.add_argument(
@@ -52,28 +50,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--save",
         metavar="FILE",
-        help="where the replay goes; more games of one sitting, and files that are there already, "
-        f"get a number (default: a dated file in {_replay_folder()})",
+        help="where the replay goes; a number is added to the name of each further game, and if "
+        f"the file exists (default: a dated file in {_replay_folder()})",
     )
     parser.epilog = _EPILOG
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Play until the window is closed; return the exit status (130 after Ctrl-C)."""
-    # With the game come the kernels, and Numba, which is slow to import.
+    # The game imports Numba, which is slow.
     from ...envs.play.by_hand import hand_config, play_by_hand
 
-    keywords: dict[str, Any] = {
-        name: getattr(arguments, name)
-        for name in ("speed", "lives")
-        if getattr(arguments, name) is not None
-    }
+    keywords: dict[str, Any] = dict(gym.spec("ArkanoidLite-v0").kwargs) if arguments.lite else {}
+    keywords.pop("actions", None)  # a person has the fire button, here too
+    for name in ("speed", "lives"):
+        if getattr(arguments, name) is not None:
+            keywords[name] = getattr(arguments, name)
     seed = secrets.randbits(62) if arguments.seed is None else arguments.seed
     save = _Saver(arguments.save)
     try:
-        config, options = hand_config(
-            arguments.level, arguments.difficulty, **keywords | (_LITE if arguments.lite else {})
-        )
+        config, options = hand_config(arguments.level, arguments.difficulty, **keywords)
         interrupted = play_by_hand(config, options, seed, save)
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
@@ -83,12 +79,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
 
 class _Saver:
-    """Saves replays, and says where; none is overwritten."""
+    """Saves replays and says where; it never overwrites a file."""
 
     def __init__(self, path: str | None) -> None:
         self._path = None if path is None else Path(path)
         folder = _replay_folder() if self._path is None else self._path.parent
-        # Now, and not after the game, it shows whether the folder can be made.
+        # A folder that cannot be made is an error before the game, not after it.
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -100,21 +96,20 @@ class _Saver:
         )
         replay.save(path)
         result = replay.result
-        print(f"score {result.score}, round {result.round}; see it again: arkanoid replay {path}")
+        print(f"score {result.score}, round {result.round}; watch it: arkanoid replay {path}")
 
 
 def free_path(path: Path) -> Path:
-    """Return a path without a file: the one given, or it with a number before its suffix."""
-    number = 2
+    """Return the path, or, if there is a file, the path with a number before its suffix."""
+    copies = itertools.count(2)
     free = path
     while free.exists():
-        free = path.with_stem(f"{path.stem}-{number}")
-        number += 1
+        free = path.with_stem(f"{path.stem}-{next(copies)}")
     return free
 
 
 def _replay_folder() -> Path:
-    """Return the user's folder for games; one here, if the user has no home (as in containers)."""
+    """Return the user's folder for replays; without a home, as in containers, one right here."""
     try:
         return Path(platformdirs.user_data_dir("arkanoid", False)).expanduser() / "replays"
     except RuntimeError:

@@ -1,4 +1,4 @@
-"""`arkanoid replay FILE`: a recorded game in a window, as a film or picture, or checked."""
+"""`arkanoid replay FILE`: shows a recorded game, writes it as a film or picture, or checks it."""
 
 import argparse
 import math
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..experiment.schema import SettingsError
+from ..experiment.errors import SettingsError
 from ..show.film import RATES, write_film
 
 if TYPE_CHECKING:
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from ...envs.batch.replays import Replay
 
-SUMMARY = "show a recorded game, export it or check it"
 
 _EPILOG = """\
 keys in the window: space or P pause, R from the start, F fill the screen, Esc quit
@@ -27,14 +26,14 @@ keys in the window: space or P pause, R from the start, F fill the screen, Esc q
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.add_argument("file", metavar="FILE", help="a replay, as `arkanoid play` saves it")
     parser.add_argument(
         "--speed",
         type=_positive,
         default=1.0,
         metavar="X",
-        help="how many times as fast as it was played (default: 1)",
+        help="factor on the speed (default: 1)",
     )
     parser.add_argument(
         "--export",
@@ -44,12 +43,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--verify",
         action="store_true",
-        help="only play it again and see that it comes out the same, bit for bit",
+        help="only play it again and check that each bit is as recorded",
     )
     parser.add_argument(
-        "--from", dest="start", type=_seconds, default=0.0, metavar="S", help="second it begins at"
+        "--from",
+        dest="start",
+        type=_seconds,
+        default=0.0,
+        metavar="S",
+        help="first second shown",
     )
-    parser.add_argument("--to", dest="stop", type=_seconds, metavar="S", help="second it ends at")
+    parser.add_argument("--to", dest="stop", type=_seconds, metavar="S", help="last second shown")
     parser.add_argument(
         "--height", type=int, default=512, metavar="N", help="of exported pictures (default: 512)"
     )
@@ -57,8 +61,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
-    """Show, export or check; return the exit status (1: another course; 130 after Ctrl-C)."""
-    # With the game come the kernels, and Numba, which is slow to import.
+    """Show, export or check; return the exit status (1: another game; 130 after Ctrl-C)."""
+    # The game imports Numba, which is slow.
     from ...envs.batch.playback import ReplayDivergedError
     from ...envs.batch.replays import Replay
 
@@ -112,9 +116,9 @@ def _export(replay: "Replay", arguments: argparse.Namespace) -> int:
 def _pictures(
     replay: "Replay", arguments: argparse.Namespace, stride: int
 ) -> Iterator["NDArray[np.uint8]"]:
-    """Yield every so manieth picture of a part of a game, and its last; stride 0: only the last.
+    """Yield every ``stride``-th picture of a part of a game, and its last one (stride 0: only it).
 
-    The sides are even numbers, for films have to have such.
+    Height and width are even numbers, as films need.
     """
     from ...envs.batch.playback import replay_states
     from ...envs.draw.picture import draw_world
@@ -136,7 +140,7 @@ def _pictures(
         wanted = stride > 0 and index >= first and (index - first) % stride == 0
         if wanted or index == last:
             yield draw_world(batch.worlds, batch.rules, 0, height, width)
-        # Up to the end, so that the end is compared, too, if it is to be seen.
+        # A film to the end plays all of the replay, which then compares the result.
         if index == last < replay.result.decisions:
             return
 
@@ -151,5 +155,5 @@ def _positive(text: str) -> float:
 def _seconds(text: str) -> float:
     value = float(text)
     if not 0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"must be a number from 0 on; got {text}")
+        raise argparse.ArgumentTypeError(f"must be a number, at least 0; got {text}")
     return value

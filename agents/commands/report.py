@@ -1,18 +1,17 @@
-"""`arkanoid report RUN...`: one page about an agent, from the runs of several seeds."""
+"""`arkanoid report RUN...`: one page about an agent, from runs with several seeds."""
 
 import argparse
 from pathlib import Path
 
+from ..experiment.errors import SettingsError
 from ..experiment.runs import ModelFile
-from ..experiment.schema import SettingsError
 from .evaluate import group_by_experiment
 
-SUMMARY = "write one page about an agent: curves, tables, a clip, settings"
 DEFAULT_OUT = "report.html"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.usage = "%(prog)s RUN... [--out FILE.html|FILE.md] [--key value ...]"
     parser.add_argument(
         "runs", metavar="RUN", nargs="+", help="runs of one experiment with different seeds"
@@ -20,8 +19,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         default=DEFAULT_OUT,
-        help=f"an .html page with everything in it, or .md with its pictures in a folder beside "
-        f"it; default: {DEFAULT_OUT}",
+        help=f"an .html page with everything in it, or an .md page with its pictures in a folder "
+        f"beside it; default: {DEFAULT_OUT}",
     )
     parser.epilog = "--key value changes how the models are measured, as for `evaluate`."
 
@@ -37,15 +36,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
             "a report is about one experiment: the runs differ in more than their seeds "
             "(`arkanoid evaluate` compares different ones)"
         )
-    from ..show.card import describe_agent
-    from ..show.page import as_html, as_markdown
+    from ..show.page import write_page
+    from ..show.report import describe_agent
 
-    parts = describe_agent(models, overrides)
+    facts, pictures = describe_agent(models, overrides)
     try:
-        if out.suffix == ".html":
-            out.write_text(as_html(parts), encoding="utf-8")
-        else:
-            out.write_text(as_markdown(parts, out), encoding="utf-8")
+        write_page(out, facts, pictures)
     except OSError as error:
         raise SettingsError(f"{out}: cannot be written: {error}") from None
     print(out)

@@ -1,17 +1,15 @@
-"""`arkanoid reproduce RUN`: train again, and compare the weights bit for bit."""
+"""`arkanoid reproduce RUN`: trains a run again and compares the weights, bit for bit."""
 
 import argparse
 from dataclasses import replace
 from typing import Any
 
+from ..experiment.errors import SettingsError
 from ..experiment.runs import RunFolder
-from ..experiment.schema import SettingsError
-
-SUMMARY = "train a run again and compare its weights, bit for bit"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.usage = "%(prog)s RUN"
     parser.add_argument("run", metavar="RUN", help="the folder of a run that has ended")
 
@@ -21,9 +19,9 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if overrides:
         raise SettingsError("a run is reproduced with its own settings: give no others")
     folder = RunFolder.of(arguments.run)
-    expected = folder.about().get("weights")
+    expected = folder.read_notes().get("weights")
     if expected is None:
-        raise SettingsError(f"{folder.path}: the run has not ended: there is nothing to compare")
+        raise SettingsError(f"{folder.path}: the run has not ended; there is nothing to compare")
     experiment = replace(
         folder.experiment(),
         name=f"{folder.path.resolve().name}-again",
@@ -35,17 +33,17 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     print(f"again: {again.path}")
     if train(experiment, again) == INTERRUPTED:
         return 130
-    about = again.about()
-    print(f"weights there  {expected}\nweights here   {about['weights']}")
-    if about["weights"] == expected:
+    notes = again.read_notes()
+    print(f"weights there  {expected}\nweights here   {notes['weights']}")
+    if notes["weights"] == expected:
         print("the same, bit for bit")
         return 0
-    print("they differ", *_differences(folder.about(), about), sep="\n")
+    print("they differ", *_differences(folder.read_notes(), notes), sep="\n")
     return 1
 
 
 def _differences(there: dict[str, Any], here: dict[str, Any]) -> list[str]:
-    """Return in what the two runs' origins differ, a line each."""
+    """Return the differences between the origins of two runs, one line for each."""
     lines = []
     for table in ("versions", "hardware", "git"):
         one, other = there.get(table) or {}, here.get(table) or {}

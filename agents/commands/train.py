@@ -1,19 +1,20 @@
-"""`arkanoid train CONFIG [--key value ...]`: train PPO and say how good it is."""
+"""`arkanoid train CONFIG [--key value ...]`: trains PPO and says how good it is."""
 
 import argparse
 import json
 from collections.abc import Iterator
 
-from ..experiment.runs import RunFolder
-from ..experiment.schema import Settings, SettingsError, leaves
-from ..experiment.settings import Experiment, load_experiment, packaged_configs
+from ..experiment.errors import SettingsError
+from ..experiment.reading import describe_settings, packaged_configs
+from ..experiment.runs import ModelFile, RunFolder
+from ..experiment.settings import Experiment, load_experiment
+from ..experiment.worlds import make_worlds
 
 DEFAULT_CONFIG = "quick"
-SUMMARY = "train PPO on the game, then compare it with the baselines"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.usage = "%(prog)s [CONFIG] [--key value ...] | --resume RUN"
     parser.add_argument(
         "config",
@@ -23,26 +24,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         f"default: {DEFAULT_CONFIG}",
     )
     parser.add_argument(
-        "--resume", metavar="RUN", help="go on with the run in this folder, from its checkpoint"
+        "--resume", metavar="RUN", help="resume the run in this folder from its checkpoint"
     )
-    parser.epilog = "\n".join(["settings:", *_settings_help(Experiment)])
+    parser.epilog = "\n".join(["settings:", *_settings_help()])
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
-    """Train, save, evaluate and record; return the exit status (130 after Ctrl-C)."""
+    """Train, save, evaluate and film; return the exit status (130 after Ctrl-C)."""
     folder = None
     if arguments.resume is not None:
         if arguments.config is not None or overrides:
-            raise SettingsError("--resume goes on with the run's own settings: give no others")
+            raise SettingsError("--resume uses the run's own settings: give no others")
         folder = RunFolder.of(arguments.resume)
         experiment = folder.experiment()
     else:
         experiment = load_experiment(arguments.config or DEFAULT_CONFIG, overrides)
-    # The environment checks its part of the settings ...
-    from ..experiment.worlds import make_worlds
-
+    # The environment reads its level files: the last of what can be wrong with the settings.
     make_worlds(experiment, 1).close()
-    # ... and only now, with all of them known to be right, come the slow imports.
+    # Only now, with all settings known to be right, come the slow imports.
     from ..learn.training import INTERRUPTED, check_resumable, train
 
     resume = folder is not None
@@ -54,7 +53,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     outcome = train(experiment, folder, resume)
     if outcome == INTERRUPTED:
         print(f"stopped; the model is {folder.model}")
-        print(f"go on    arkanoid train --resume {folder.path}")
+        print(f"resume   arkanoid train --resume {folder.path}")
         return 130
     print(f"training: {outcome}")
     _show(experiment, folder)
@@ -62,25 +61,25 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
 
 def _show(experiment: Experiment, folder: RunFolder) -> None:
-    """Measure the saved model, record it, and print the results and where everything is."""
-    from ..experiment.runs import ModelFile
+    """Measure the saved model, film it, and print the results and where everything is."""
     from ..learn.model import load_policy
     from ..measure.comparison import AGENT, as_json, as_tables, compare
-    from ..show.clips import record_clip
+    from ..show.frames import film_policy
 
     model = ModelFile.find(str(folder.path))
     policy = load_policy(model.path, experiment)
     comparison = compare(experiment, {AGENT: [policy]})
     results = as_json(experiment, comparison, {AGENT: [model.describe()]})
     folder.evaluation.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    record_clip(experiment, policy, folder.picture)
+    film_policy(experiment, policy, folder.film)
     print(f"\n{as_tables(experiment, comparison)}\n")
     print(f"model    {model.path}\nlogs     {folder.log}  (tensorboard --logdir {folder.log})")
-    print(f"picture  {folder.picture}\nagain    arkanoid evaluate {folder.path}")
+    print(f"film     {folder.film}\nagain    arkanoid evaluate {folder.path}")
 
 
-def _settings_help(schema: type[Settings]) -> Iterator[str]:
-    for leaf in leaves(schema):
-        if not leaf.is_table:
-            key = f"{leaf.key}.KEY" if leaf.is_free else leaf.key
-            yield f"  --{key}  {leaf.meaning} ({leaf.expected()}; default {leaf.default!r})"
+def _settings_help() -> Iterator[str]:
+    for key, setting in describe_settings(Experiment).items():
+        if setting.is_free:
+            yield f"  --{key}.KEY  {setting.meaning}"
+        else:
+            yield f"  --{key}  {setting.meaning} ({setting.expected}; default {setting.default!r})"

@@ -1,34 +1,33 @@
-"""`arkanoid tune CONFIG [--space SPACE] [--trials N]`: search for hyper-parameters."""
+"""`arkanoid tune CONFIG [--space SPACE] [--trials N]`: searches for hyper-parameters."""
 
 import argparse
 import sys
 from pathlib import Path
 
-from ..experiment.schema import SettingsError
+from ..experiment.errors import SettingsError
 from ..experiment.settings import load_experiment
 from ..learn.tuning import best_as_toml, load_space, open_study, search
 
-SUMMARY = "search for hyper-parameters"
 DEFAULT_SPACE = "ppo"
 DEFAULT_TRIALS = 30
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Describe the command to ``parser``."""
+    """Add the command's arguments."""
     parser.usage = "%(prog)s CONFIG [--space SPACE] [--trials N] [--study FOLDER] [--key value ...]"
     parser.add_argument("config", metavar="CONFIG", help="TOML file or packaged config")
     parser.add_argument(
         "--space",
         default=DEFAULT_SPACE,
-        help=f"TOML file or packaged space; default: {DEFAULT_SPACE}",
+        help=f"TOML file or packaged search space; default: {DEFAULT_SPACE}",
     )
     parser.add_argument(
         "--trials", type=int, default=DEFAULT_TRIALS, help=f"default: {DEFAULT_TRIALS}"
     )
-    parser.add_argument("--study", help="its folder; default: OUTPUT/NAME-tune")
+    parser.add_argument("--study", help="the study's folder; default: OUTPUT/NAME-tune")
     parser.epilog = (
-        "A study that was stopped goes on where it was; several processes may work on one.\n"
-        "Trials are trained as CONFIG says and judged by its [validation]; the best settings are\n"
+        "The same command resumes a study that was stopped; several processes may share a study.\n"
+        "CONFIG says how trials are trained, its [validation] judges them; the best settings are\n"
         "printed as TOML."
     )
 
@@ -39,7 +38,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     space = load_space(arguments.space)
     if not experiment.validation.every:
         raise SettingsError(
-            f"{arguments.config}: trials are judged by validation, and there is none: set "
+            f"{arguments.config}: validation judges the trials, and it is off: set "
             f"'validation.every' (decisions between two measurements)"
         )
     if arguments.trials < 1:
@@ -50,7 +49,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     try:
         search(study, space, arguments.config, overrides, folder, arguments.trials)
     except KeyboardInterrupt:
-        print("stopped; the same command goes on", file=sys.stderr)
+        print("stopped; the same command resumes the search", file=sys.stderr)
         return 130
     print(best_as_toml(study, space), end="")
     return 0

@@ -23,7 +23,7 @@ def describe_origin() -> dict[str, Any]:
 
 
 def weights_hash(state: dict[str, Any]) -> str:
-    """Return the SHA-256, in hexadecimal, of a network's ``state_dict``: names, shapes and bits."""
+    """Return the SHA-256, in hexadecimal, of a ``state_dict``: names, shapes and bits."""
     digest = hashlib.sha256()
     for name, tensor in sorted(state.items()):
         array = tensor.detach().cpu().contiguous().numpy()
@@ -43,10 +43,10 @@ def _versions() -> dict[str, str]:
 
 
 def _commit() -> dict[str, Any] | None:
-    """Return the commit of the clone that runs, and whether it was changed; None if it is none."""
+    """Return the clone's commit, and whether files are changed; None without a clone."""
     commit = _git("rev-parse", "HEAD")
     top = _git("rev-parse", "--show-toplevel")
-    # An installed copy may lie in somebody else's repository.
+    # An installed copy may lie in another repository.
     if commit is None or top is None or Path(top).resolve() != _ROOT:
         return None
     return {"commit": commit, "changed": bool(_git("status", "--porcelain"))}
@@ -73,7 +73,7 @@ def _hardware() -> dict[str, Any]:
 
 
 def _processor() -> str:
-    """Return the processor's name; Linux tells it in a file only."""
+    """Return the processor's name; on Linux only a file tells it."""
     try:
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
             if line.startswith("model name"):

@@ -1,4 +1,4 @@
-"""The folder of a training run."""
+"""The folder of a training run, and the models in it."""
 
 import hashlib
 import json
@@ -10,24 +10,23 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from .files import write_whole
+from .. import pretrained
+from .errors import SettingsError
+from .files import write_atomically
 from .provenance import describe_origin
-from .schema import SettingsError, to_toml
+from .reading import to_toml
 from .settings import Experiment, load_experiment
-
-# The agent that comes with the package.
-PRETRAINED = "pretrained"
 
 
 @dataclass(frozen=True)
 class RunFolder:
-    """Where a run keeps what; see the properties."""
+    """Where a run keeps its files; the properties name them."""
 
     path: Path
 
     @classmethod
     def create(cls, experiment: Experiment) -> "RunFolder":
-        """Make a new folder ``<output>/<name>-seed<seed>-<time>`` with the resolved config in it.
+        """Make a new folder ``<output>/<name>-seed<seed>-<time>`` with all settings in it.
 
         Raises `SettingsError` if the folder cannot be written.
         """
@@ -35,14 +34,16 @@ class RunFolder:
         try:
             run = cls(_new_folder(Path(experiment.output), stem))
             run.config.write_text(to_toml(experiment), encoding="utf-8")
-            run.note(**describe_origin(), seed=experiment.seed, outcome="unfinished", sessions=[])
+            run.add_notes(
+                **describe_origin(), seed=experiment.seed, outcome="unfinished", sessions=[]
+            )
         except OSError as error:
             raise SettingsError(f"'output' cannot be written to: {error}") from None
         return run
 
     @classmethod
     def of(cls, folder: str) -> "RunFolder":
-        """Return the run that a path names; raises `SettingsError` if it is none."""
+        """Return the run in a folder; raise `SettingsError` if there is none."""
         run = cls(Path(folder))
         if not run.config.is_file():
             raise SettingsError(
@@ -55,36 +56,37 @@ class RunFolder:
         """Return the run's experiment, changed by overrides as `load_experiment` takes them."""
         return load_experiment(str(self.config), overrides or [])
 
-    def about(self) -> dict[str, Any]:
-        """Return what `note` has noted."""
+    def read_notes(self) -> dict[str, Any]:
+        """Return what `add_notes` has written; nothing if the file is missing."""
         if not self.notes.is_file():
             return {}
-        noted: dict[str, Any] = json.loads(self.notes.read_text(encoding="utf-8"))
-        return noted
+        notes: dict[str, Any] = json.loads(self.notes.read_text(encoding="utf-8"))
+        return notes
 
-    def note(self, **values: Any) -> None:
-        """Keep what is known about the run besides its settings."""
-        text = json.dumps({**self.about(), **values}, indent=2) + "\n"
-        write_whole(self.notes, text.encode())
+    def add_notes(self, **values: Any) -> None:
+        """Write down more about the run; a value replaces an earlier one of its name."""
+        text = json.dumps({**self.read_notes(), **values}, indent=2) + "\n"
+        write_atomically(self.notes, text.encode())
 
     def note_session(self, started: float, first: int, last: int) -> None:
-        """Note that it was trained from a decision to another since ``started`` (`time.time`).
+        """Note a session that trains from decision ``first`` and has come to ``last``.
 
-        It is said again with each checkpoint: of a session that is killed that much is known.
+        Each checkpoint repeats it, so that a killed session is known up to its last checkpoint.
+        ``started``, from `time.time`, tells the sessions apart.
         """
         begun = datetime.fromtimestamp(started).isoformat(timespec="milliseconds")
-        earlier = [one for one in self.about().get("sessions", []) if one["started"] != begun]
+        earlier = [one for one in self.read_notes().get("sessions", []) if one["started"] != begun]
         session = {
             "started": begun,
             "seconds": round(time.time() - started, 1),
             "from": first,
             "to": last,
         }
-        self.note(sessions=[*earlier, session])
+        self.add_notes(sessions=[*earlier, session])
 
     @property
     def config(self) -> Path:
-        """The resolved settings."""
+        """All settings, the defaults among them."""
         return self.path / "config.toml"
 
     @property
@@ -99,12 +101,12 @@ class RunFolder:
 
     @property
     def best(self) -> Path:
-        """The best model by validation, where there was any."""
+        """The best model by validation; without validation there is none."""
         return self.path / "best.zip"
 
     @property
     def checkpoint(self) -> Path:
-        """All that a killed run needs to go on."""
+        """All that a killed run needs to resume."""
         return self.path / "checkpoint.pt"
 
     @property
@@ -123,8 +125,8 @@ class RunFolder:
         return self.path / "evaluation.json"
 
     @property
-    def picture(self) -> Path:
-        """A clip of an episode."""
+    def film(self) -> Path:
+        """A film of an episode."""
         return self.path / "play.gif"
 
 
@@ -137,15 +139,17 @@ class ModelFile:
 
     @classmethod
     def find(cls, name: str | None) -> "ModelFile":
-        """Return the model that is meant by the folder of a run, a model file in one, or None.
+        """Return the model in the folder of a run, a model file itself, or the packaged agent.
 
-        Of a run the best model by validation is meant, and the last one where there is none; None
-        means the agent that comes with the package. Raises `SettingsError` if there is no model.
+        Args:
+            name: of a folder: its best model by validation, or else its last one; of a model file
+                in such a folder: this one. None: the agent that comes with the package.
+
+        Raises:
+            SettingsError: there is no model.
         """
-        if name is None:
-            name = str(pretrained_run())
-        path = Path(name)
-        run = RunFolder.of(name if path.is_dir() or not path.exists() else str(path.parent))
+        path = pretrained_run() if name is None else Path(name)
+        run = RunFolder.of(str(path if path.is_dir() or not path.exists() else path.parent))
         wanted = path
         if path.is_dir():
             wanted = run.best if run.best.is_file() else run.model
@@ -169,13 +173,13 @@ class ModelFile:
 
 def pretrained_run() -> Path:
     """Return the folder of the agent that comes with the package."""
-    return Path(str(resources.files(__name__.rpartition(".experiment.")[0]))) / PRETRAINED
+    return Path(str(resources.files(pretrained)))
 
 
 def _new_folder(parent: Path, stem: str) -> Path:
     """Make and return the first of ``stem``, ``stem-2``, ``stem-3``, ... that does not exist."""
-    for number in count(1):
-        path = parent / (stem if number == 1 else f"{stem}-{number}")
+    for attempt in count(1):
+        path = parent / (stem if attempt == 1 else f"{stem}-{attempt}")
         try:
             path.mkdir(parents=True)
         except FileExistsError:

@@ -1,106 +1,131 @@
-"""What an experiment is: the settings of a training run and where they are read from.
+"""What an experiment is: the settings of a training run.
 
-This module is read before torch is imported, so that a misspelt key costs a moment, not seconds.
+They are read before torch is imported, so that a misspelt key costs a moment and not seconds.
 """
 
 import itertools
-import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from importlib import resources
-from pathlib import Path
-from typing import Any
+from dataclasses import field, replace
+from functools import cached_property
+from typing import Annotated, Any, Literal, get_args
 
-from .schema import Settings, SettingsError, read_settings, setting
+import gymnasium as gym
+from pydantic import ConfigDict, Field, Strict
+from pydantic.dataclasses import dataclass
 
-# Seeds of NumPy's legacy generator, which stable-baselines3 seeds too, end at 2**32 - 1.
+from ...envs.config import Config
+from ...envs.registration import resolve_config
+from .errors import SettingsError
+from .reading import read_settings, read_toml
+
+# NumPy's legacy generator, which stable-baselines3 seeds, takes seeds up to 2**32 - 1.
 _LARGEST_SEED = 2**32 - 1
 
-# How the packaged files of experiments end.
-CONFIG = ".toml"
+_CHECKED = ConfigDict(extra="forbid", allow_inf_nan=False)
 
-ACTIVATIONS = ("tanh", "relu", "elu", "silu")
-SCHEDULES = ("constant", "linear")
-FEATURES = ("auto", "flat", "lattice", "planes", "nature")
-SUITES = ("games", "training", "test", "named")
-BASELINES = ("no-op", "random", "ball-follower", "planner")
-BEST = ("return", "cleared", "score", "round")
+# TOML keeps these kinds apart; without `Strict` pydantic would take one for another.
+Integer = Annotated[int, Strict()]
+Number = Annotated[float, Strict()]
+Switch = Annotated[bool, Strict()]
+
+Count = Annotated[Integer, Field(ge=1)]
+Seed = Annotated[Integer, Field(ge=0, le=_LARGEST_SEED)]
+Positive = Annotated[Number, Field(gt=0)]
+NotNegative = Annotated[Number, Field(ge=0)]
+Fraction = Annotated[Number, Field(ge=0, le=1)]
+PositiveFraction = Annotated[Number, Field(gt=0, le=1)]
+
+SuiteName = Literal["games", "training", "test", "named"]
+BaselineName = Literal["no-op", "random", "ball-follower", "planner"]
+BestMeasure = Literal["return", "cleared", "score", "round"]
+BASELINES: tuple[BaselineName, ...] = get_args(BaselineName)
+BEST: tuple[BestMeasure, ...] = get_args(BestMeasure)
 
 
-@dataclass(frozen=True)
-class Training(Settings):
+@dataclass(frozen=True, config=_CHECKED)
+class Training:
     """How much is played and by how many."""
 
-    worlds: int = setting(64, "worlds that are played at once", at_least=1)
-    timesteps: int = setting(1_000_000, "decisions of all worlds together", at_least=1)
-    torch_threads: int = setting(
-        1, "threads of torch; the weights depend on it in the last bits", at_least=1
+    worlds: Count = Field(default=64, description="worlds that are played at once")
+    timesteps: Count = Field(default=1_000_000, description="decisions of all worlds together")
+    torch_threads: Count = Field(
+        default=1, description="threads of torch; the weights' last bits depend on it"
     )
-    checkpoint_every: int = setting(
-        100_000, "decisions between two checkpoints, from which a killed run goes on", at_least=1
+    checkpoint_every: Count = Field(
+        default=100_000,
+        description="decisions between two checkpoints, from which a killed run resumes",
     )
 
 
-@dataclass(frozen=True)
-class Ppo(Settings):
+@dataclass(frozen=True, config=_CHECKED)
+class Ppo:
     """Hyper-parameters of proximal policy optimisation, named as in stable-baselines3."""
 
-    learning_rate: float = setting(3e-4, "Adam's step size", above=0)
-    schedule: str = setting("constant", "learning rate and clip range over time", choices=SCHEDULES)
-    n_steps: int = setting(128, "decisions of each world between two updates", at_least=1)
-    batch_size: int = setting(1024, "decisions in one gradient step", at_least=2)
-    n_epochs: int = setting(4, "passes over the collected decisions in one update", at_least=1)
-    gamma: float = setting(0.99, "discount factor a decision", at_least=0, at_most=1)
-    gae_lambda: float = setting(0.95, "of generalised advantage estimation", at_least=0, at_most=1)
-    clip_range: float = setting(0.2, "how far one update may move a probability's ratio", above=0)
-    ent_coef: float = setting(0.0, "weight of the entropy bonus", at_least=0)
-    vf_coef: float = setting(0.5, "weight of the value function's loss", at_least=0)
-    max_grad_norm: float = setting(0.5, "gradients are clipped to this norm", above=0)
-
-
-@dataclass(frozen=True)
-class Network(Settings):
-    """What is made of an observation, and the policy's and the value function's layers upon it."""
-
-    features: str = setting(
-        "auto",
-        "flat: all numbers side by side; lattice: of `vector`, the bricks through convolutions; "
-        "planes: `grid` or `rgb` through convolutions; nature: `rgb` through those of Mnih et al. "
-        "(2015), large and slow; "
-        "auto: what suits the observation",
-        choices=FEATURES,
+    learning_rate: Positive = Field(default=3e-4, description="Adam's step size")
+    schedule: Literal["constant", "linear"] = Field(
+        default="constant",
+        description="learning rate and clip range over time; linear: they fall to 0",
     )
-    channels: tuple[int, ...] = setting(
-        (16, 32),
-        "of lattice's and planes' convolutions, each of which halves the picture",
-        at_least=1,
+    n_steps: Count = Field(default=128, description="decisions of each world between two updates")
+    batch_size: Annotated[Integer, Field(ge=2)] = Field(
+        default=1024, description="decisions in one gradient step"
     )
-    embedding: int = setting(64, "features that the convolutions end in", at_least=1)
-    hidden: tuple[int, ...] = setting(
-        (64, 64), "widths of the policy's layers, and of the value function's", at_least=1
+    n_epochs: Count = Field(
+        default=4, description="passes over the collected decisions in one update"
     )
-    activation: str = setting("tanh", "between the layers", choices=ACTIVATIONS)
+    gamma: Fraction = Field(default=0.99, description="discount factor per decision")
+    gae_lambda: Fraction = Field(
+        default=0.95, description="lambda of generalised advantage estimation"
+    )
+    clip_range: Positive = Field(
+        default=0.2, description="how far one update may move the ratio of two probabilities"
+    )
+    ent_coef: NotNegative = Field(default=0.0, description="weight of the entropy bonus")
+    vf_coef: NotNegative = Field(default=0.5, description="weight of the value function's loss")
+    max_grad_norm: Positive = Field(default=0.5, description="gradients are clipped to this norm")
 
 
-@dataclass(frozen=True)
-class Curriculum(Settings):
-    """How episodes begin in the course of the training; at the beginning of a stage all do anew."""
+@dataclass(frozen=True, config=_CHECKED)
+class Network:
+    """Which features are made of an observation, and the layers above them."""
 
-    stages: tuple[float, ...] = setting(
-        (), "parts of the training after which a further stage begins", above=0, at_most=1
+    features: Literal["auto", "flat", "lattice", "planes", "nature"] = Field(
+        default="auto",
+        description="flat: all numbers side by side; lattice: the bricks of `vector` through "
+        "convolutions; planes: `grid` or `rgb` through convolutions; nature: `rgb` through those "
+        "of Mnih et al. (2015), large and slow; auto: what suits the observation",
     )
-    difficulty: tuple[float, ...] = setting(
-        (),
-        "of generated rounds, one number a stage: worlds have from 0 to it, evenly spread",
-        at_least=0,
-        at_most=1,
+    channels: tuple[Count, ...] = Field(
+        default=(16, 32),
+        description="of the convolutions of lattice and planes; each halves the picture",
     )
-    rounds: tuple[int, ...] = setting(
-        (), "one number a stage: worlds begin in rounds 1 to this one, in turn", at_least=1
+    embedding: Count = Field(default=64, description="features that the convolutions return")
+    hidden: tuple[Count, ...] = Field(
+        default=(64, 64), description="widths of the policy's layers, and of the value function's"
+    )
+    activation: Literal["tanh", "relu", "elu", "silu"] = Field(
+        default="tanh", description="function between the layers"
+    )
+
+
+@dataclass(frozen=True, config=_CHECKED)
+class Curriculum:
+    """How episodes begin in each stage of a training; a stage begins with new episodes."""
+
+    stages: tuple[PositiveFraction, ...] = Field(
+        default=(), description="parts of the training after which a further stage begins"
+    )
+    difficulty: tuple[Fraction, ...] = Field(
+        default=(),
+        description="of generated levels, one number per stage; the worlds' difficulties are "
+        "evenly spread from 0 to it",
+    )
+    rounds: tuple[Count, ...] = Field(
+        default=(),
+        description="one number per stage; worlds begin in rounds 1 to this one, in turn",
     )
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         if any(later <= earlier for earlier, later in itertools.pairwise(self.stages)):
             raise SettingsError(f"'curriculum.stages' must rise, not {list(self.stages)}")
         count = len(self.stages) + 1
@@ -117,62 +142,73 @@ class Curriculum(Settings):
             )
 
 
-@dataclass(frozen=True)
-class Validation(Settings):
-    """Measuring the policy now and then in the training, on what it does not train on."""
+@dataclass(frozen=True, config=_CHECKED)
+class Validation:
+    """Regular measurements during the training, on episodes that it does not train on."""
 
-    every: int = setting(0, "decisions between two measurements; 0: there are none", at_least=0)
-    levels: tuple[str, ...] = setting(
-        (),
-        'each is played until it is cleared: names, files or seeds ("seeds:9000-9019"); none: '
-        "whole games as in the training",
+    every: Annotated[Integer, Field(ge=0)] = Field(
+        default=0, description="decisions between two measurements; 0: no validation"
     )
-    episodes: int = setting(20, "episodes of each level, one a seed", at_least=1)
-    seed: int = setting(500_000, "the first seed", at_least=0, at_most=_LARGEST_SEED)
-    best: str = setting("return", "mean that the best model has most of", choices=BEST)
-    stop_at: float = setting(
-        0.0, "cleared rate that ends the training; 0: none does", at_least=0, at_most=1
+    levels: tuple[str, ...] = Field(
+        default=(),
+        description='each is played until it is cleared: names, "named" for all named rounds, '
+        'files or seeds ("seeds:9000-9019"); without any: whole games as in the training',
     )
-    patience: int = setting(
-        0, "measurements without a new best that end the training; 0: no number does", at_least=0
+    episodes: Count = Field(default=20, description="episodes of each level, one per seed")
+    seed: Seed = Field(default=500_000, description="the first seed")
+    best: BestMeasure = Field(
+        default="return", description="the best model has the largest mean of this"
+    )
+    stop_at: Fraction = Field(
+        default=0.0, description="cleared rate that ends the training; 0: never"
+    )
+    patience: Annotated[Integer, Field(ge=0)] = Field(
+        default=0, description="measurements without a new best that end the training; 0: never"
     )
 
 
-@dataclass(frozen=True)
-class Evaluation(Settings):
-    """How a policy is measured: with the same levels and the same seeds as every other policy."""
+@dataclass(frozen=True, config=_CHECKED)
+class Evaluation:
+    """How a policy is measured: all policies play the same levels with the same seeds."""
 
-    suites: tuple[str, ...] = setting(
-        ("games",),
-        "games: whole ones as in the training; and levels until they are cleared: training: those "
-        "of the training; test: generated ones of test seeds; named: the named rounds",
-        choices=SUITES,
+    suites: tuple[SuiteName, ...] = Field(
+        default=("games",),
+        description="games: whole ones as in the training; the others play levels until they are "
+        "cleared: training: those of the training; test: generated from the test seeds; named: "
+        "the named rounds",
     )
-    episodes: int = setting(100, "whole games, one a seed", at_least=1)
-    level_episodes: int = setting(10, "episodes of each level, one a seed", at_least=1)
-    planner_episodes: int = setting(
-        2, "of them the planner plays at the most, for it is slow", at_least=1
+    episodes: Count = Field(default=100, description="whole games, one per seed")
+    level_episodes: Count = Field(default=10, description="episodes of each level, one per seed")
+    planner_episodes: Count = Field(
+        default=2, description="most of these that the planner plays, which is slow"
     )
-    generated: int = setting(20, "generated levels of a suite", at_least=1)
-    seed: int = setting(1_000_000, "the first seed", at_least=0, at_most=_LARGEST_SEED)
-    deterministic: bool = setting(True, "take the likeliest action instead of drawing one")
-    baselines: tuple[str, ...] = setting(
-        BASELINES, "who else is measured; the planner in no whole games", choices=BASELINES
+    generated: Count = Field(default=20, description="generated levels in a suite")
+    seed: Seed = Field(default=1_000_000, description="the first seed")
+    deterministic: Switch = Field(
+        default=True, description="whether a policy takes the likeliest action or draws one"
     )
-    clip_seconds: float = setting(20.0, "length of the recorded clip, in game time", above=0)
+    baselines: tuple[BaselineName, ...] = Field(
+        default=BASELINES, description="who else is measured; the planner plays no whole games"
+    )
+    film_seconds: Positive = Field(default=20.0, description="length of the film, in game time")
 
 
-@dataclass(frozen=True)
-class Experiment(Settings):
-    """One training run: everything that decides its outcome, and where it goes."""
+@dataclass(frozen=True, config=_CHECKED)
+class Experiment:
+    """One training run: everything that decides its outcome, and where it goes.
 
-    name: str = setting("experiment", "begins the name of the run's folder")
-    seed: int = setting(0, "of weights, actions and worlds", at_least=0, at_most=_LARGEST_SEED)
-    output: str = setting("runs", "the folder that gets the run's folder")
-    env_id: str = setting("Arkanoid-v0", "a Gymnasium environment with a native vector version")
-    env: dict[str, Any] = field(
-        default_factory=dict,
-        metadata={"meaning": "a keyword argument of the environment, passed on as it is"},
+    Pydantic's ValidationError, a ValueError, says what is wrong with an experiment made in Python.
+    """
+
+    name: str = Field(default="experiment", description="begins the name of the run's folder")
+    seed: Seed = Field(default=0, description="of weights, actions and worlds")
+    output: str = Field(default="runs", description="the folder that gets the run's folder")
+    env_id: str = Field(
+        default="Arkanoid-v0",
+        description='a registered id of this game; "module:id" imports the module',
+    )
+    env: dict[str, Any] = Field(
+        default_factory=dict, description="a keyword argument of the environment"
     )
     training: Training = field(default_factory=Training)
     ppo: Ppo = field(default_factory=Ppo)
@@ -181,8 +217,20 @@ class Experiment(Settings):
     validation: Validation = field(default_factory=Validation)
     evaluation: Evaluation = field(default_factory=Evaluation)
 
+    @cached_property
+    def config(self) -> Config:
+        """The environment's configuration, from what ``env_id`` stands for and ``[env]``.
+
+        It says nothing about level files, which the environment reads when it is made.
+        """
+        try:
+            return resolve_config(self.env_id, self.env)
+        except (gym.error.Error, ImportError) as error:
+            raise SettingsError(f"'env_id' = {self.env_id!r}: {error}") from None
+        except (TypeError, ValueError) as error:
+            raise SettingsError(f"{self.env_id} refuses the [env] table: {error}") from None
+
     def __post_init__(self) -> None:
-        super().__post_init__()
         if not self.name or not set(self.name).isdisjoint('/\\:*?"<>|'):
             raise SettingsError(f"'name' becomes a folder's name, and {self.name!r} cannot be one")
         if not self.output:
@@ -197,8 +245,8 @@ class Experiment(Settings):
         self._check_features()
 
     def _check_features(self) -> None:
-        """Refuse features that the observation has not got the form for."""
-        observation = self.env.get("observation", "vector")
+        """Refuse features that do not suit the observation."""
+        observation = self.config.observation
         suited = {"lattice": ("vector",), "planes": ("grid", "rgb"), "nature": ("rgb",)}
         wanted = suited.get(self.network.features)
         if wanted is not None and observation not in wanted:
@@ -214,8 +262,8 @@ def load_experiment(config: str, overrides: Sequence[tuple[str, str]] = ()) -> E
     """Return the experiment of a TOML file or of a packaged config's name.
 
     ``overrides`` are pairs of a dotted key and the text of its value, as in
-    ``[("ppo.learning_rate", "1e-3")]``. Raises `SettingsError` if the file is missing, is no TOML
-    or holds a setting that is unknown or wrong.
+    ``[("ppo.learning_rate", "1e-3")]``. Raises `SettingsError` if the file is missing or is not
+    TOML, or if a setting is unknown or wrong.
     """
     source, table = read_toml(config)
     return read_settings(Experiment, table, source, overrides)
@@ -224,45 +272,3 @@ def load_experiment(config: str, overrides: Sequence[tuple[str, str]] = ()) -> E
 def seeded(experiment: Experiment, seed: int) -> Experiment:
     """Return the experiment with another first seed of its evaluation."""
     return replace(experiment, evaluation=replace(experiment.evaluation, seed=seed))
-
-
-def read_toml(config: str, suffix: str = CONFIG) -> tuple[str, dict[str, Any]]:
-    """Return the name, for messages, and the content of a TOML file or of a packaged one's name.
-
-    Raises `SettingsError` if it is missing or is no TOML.
-    """
-    source, text = _read_config(config, suffix)
-    try:
-        return source, tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SettingsError(f"{source}: not a TOML file: {error}") from None
-
-
-def packaged_configs(suffix: str = CONFIG) -> list[str]:
-    """Return the names of the configs, or other TOML files, that come with the package."""
-    files = (file.name for file in resources.files(_configs_package()).iterdir())
-    names = (name.removesuffix(suffix) for name in files if name.endswith(suffix))
-    # A name with a further dot in it is of another kind of file.
-    return sorted(name for name in names if "." not in name)
-
-
-def _read_config(config: str, suffix: str) -> tuple[str, str]:
-    """Return the name of a config for messages, and its text."""
-    path = Path(config)
-    try:
-        if config in packaged_configs(suffix) and not path.is_file():
-            file = resources.files(_configs_package()) / f"{config}{suffix}"
-            return f"config {config!r}", file.read_text(encoding="utf-8")
-        return config, path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise SettingsError(f"{config}: not a TOML file: {error}") from None
-    except OSError as error:
-        names = ", ".join(packaged_configs(suffix))
-        raise SettingsError(
-            f"{config}: cannot be read ({error.strerror}); give the path of a TOML file or the "
-            f"name of a packaged one: {names}"
-        ) from None
-
-
-def _configs_package() -> str:
-    return f"{__name__.rsplit('.', 3)[0]}.configs"

@@ -1,31 +1,47 @@
 """The environment of an experiment: many worlds in one native vector environment."""
 
-from collections.abc import Collection
 from typing import Any
 
 import gymnasium as gym
 from gymnasium.vector import VectorEnv
 
-from .schema import SettingsError
+from ...envs.config import Config
+from .errors import SettingsError
 from .settings import Experiment
 
 
 def native(worlds: VectorEnv[Any, Any, Any]) -> Any:
-    """Return the environment itself, with what only ours has: `config`, `layout`, snapshots."""
+    """Return the `ArkanoidVectorEnv` itself, which has `config`, `layout` and snapshots."""
     return worlds.unwrapped
 
 
 def make_worlds(
-    experiment: Experiment, num_worlds: int, without: Collection[str] = (), **extra: Any
+    experiment: Experiment,
+    num_worlds: int,
+    config: Config | None = None,
+    render_mode: str | None = None,
 ) -> VectorEnv[Any, Any, Any]:
     """Return ``num_worlds`` worlds that start a new episode in the step that ends one.
 
-    ``extra`` goes beyond the experiment's ``[env]`` table, of which the keys ``without`` are left
-    out, and before it. The observations that the environment returns are overwritten by its next
-    step. Raises `SettingsError` if the environment refuses its arguments.
+    The next step overwrites the observations that the environment returns.
+
+    Args:
+        experiment: its ``env_id`` and ``[env]`` say which environment.
+        num_worlds: how many.
+        config: replaces the experiment's own configuration.
+        render_mode: as for `gym.make_vec`.
+
+    Raises:
+        SettingsError: the environment refuses its arguments.
     """
-    table = {key: value for key, value in experiment.env.items() if key not in without}
-    arguments = {"copy": False, **table, **extra, "autoreset_mode": "SameStep"}
+    resolved = experiment.config if config is None else config
+    arguments = {
+        "copy": False,
+        **experiment.env,  # for what is no part of a configuration, such as `threads`
+        **resolved.plain(),
+        "render_mode": render_mode,
+        "autoreset_mode": "SameStep",
+    }
     try:
         return gym.make_vec(
             experiment.env_id,

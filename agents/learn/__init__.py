@@ -1,1 +1,4 @@
-"""Training: PPO, its networks, and what happens between two rollouts."""
+"""How an agent learns: PPO, its networks, and what happens between two rollouts.
+
+Others use `training.train`, `model` (saving and loading), `tuning` and `curves.read_curve`.
+"""

@@ -1,4 +1,4 @@
-"""What happens beside a training: statistics, the progress bar, and stopping it."""
+"""Small callbacks of a training: statistics, the progress bar, and stopping."""
 
 import math
 import os
@@ -10,7 +10,7 @@ from tqdm import tqdm  # type: ignore[import-untyped]
 
 from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
 
-# What the progress bar shows of the latest episodes, and how it calls it.
+# Statistics of the latest episodes that the progress bar shows, and its names for them.
 _SHOWN = {"r": "return", "hits": "bricks", "rounds_cleared": "rounds"}
 
 
@@ -28,17 +28,17 @@ class GameStatistics(BaseCallback):
 
 
 class ProgressBar(BaseCallback):
-    """Shows decisions a second, and the latest episodes' mean return, bricks and rounds."""
+    """Shows decisions per second and the latest episodes' mean return, bricks and rounds."""
 
     def _on_training_start(self) -> None:
-        # Whole rollouts are played, so that the last one may go beyond what was asked for.
+        # Rollouts are played to their end: the last one may exceed the budget.
         rollout = self.model.n_steps * self.training_env.num_envs  # type: ignore[attr-defined]
         self._bar = tqdm(
             initial=self.model.num_timesteps,
             total=math.ceil(self.locals["total_timesteps"] / rollout) * rollout,
             unit=" decisions",
             unit_scale=True,
-            # A terminal is redrawn; a file gets few lines.
+            # A terminal redraws the bar; a file gets few lines.
             mininterval=0.2 if os.isatty(2) else 10.0,
         )
 
@@ -56,10 +56,10 @@ class ProgressBar(BaseCallback):
 
 
 class StopRequest(BaseCallback):
-    """Ends the training after the decision in which it is asked to.
+    """Ends the training after the decision in which someone asks for it.
 
     Attributes:
-        reason: why, or None.
+        reason: why the training ends, or None.
     """
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class StopRequest(BaseCallback):
         self.reason: str | None = None
 
     def request(self, reason: str) -> None:
-        """Ask for the end."""
+        """Ask for the end of the training."""
         self.reason = reason
 
     def _on_step(self) -> bool:

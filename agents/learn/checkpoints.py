@@ -1,6 +1,6 @@
-"""The whole state of a training run between two rollouts, so that a killed one goes on from there.
+"""The whole state of a training run between two rollouts, from which a killed run resumes.
 
-The weights after kill and resume are those of the run that was not killed, bit for bit.
+The weights after a kill and a resumption are, bit for bit, those of an undisturbed run.
 """
 
 import copy
@@ -15,11 +15,11 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
 from ..adapter import GymnasiumVecEnv
-from ..experiment.files import replace_whole
-from ..experiment.schema import SettingsError
+from ..experiment.errors import SettingsError
+from ..experiment.files import replace_atomically
 from ..experiment.worlds import native
 
-# What stable-baselines3 counts and remembers from one rollout to the next.
+# What stable-baselines3 counts and keeps from one rollout to the next.
 _MODEL_FIELDS = (
     "num_timesteps",
     "_n_updates",
@@ -30,11 +30,11 @@ _MODEL_FIELDS = (
     "ep_info_buffer",
     "ep_success_buffer",
 )
-_FORMAT = 1
+_FORMAT = 2
 
 
-def capture(model: PPO, venv: GymnasiumVecEnv, extra: dict[str, Any]) -> dict[str, Any]:
-    """Return the state of a training between two rollouts; ``extra`` is kept with it."""
+def capture(model: PPO, venv: GymnasiumVecEnv, callback_state: dict[str, Any]) -> dict[str, Any]:
+    """Return the state of a training between two rollouts, that of its callbacks included."""
     environment = native(venv.env)
     return {
         "format": _FORMAT,
@@ -48,7 +48,7 @@ def capture(model: PPO, venv: GymnasiumVecEnv, extra: dict[str, Any]) -> dict[st
             "numpy": np.random.get_state(),  # noqa: NPY002 (stable-baselines3 draws from it)
             "torch": torch.random.get_rng_state(),
         },
-        "extra": copy.deepcopy(extra),
+        "callbacks": copy.deepcopy(callback_state),
     }
 
 
@@ -59,52 +59,52 @@ def restore(state: dict[str, Any], model: PPO, venv: GymnasiumVecEnv) -> None:
     model.policy.optimizer.load_state_dict(state["optimizer"])
     for name, value in copy.deepcopy(state["model"]).items():
         setattr(model, name, value)
-    # Before its first reset an environment has no state that could be replaced.
+    # Only an environment that was reset has a state to replace.
     venv.reset()
     environment.restore(state["environment"])
     venv.set_statistics(state["statistics"])
-    # At last, for what came before may have drawn.
+    # Last, because the steps above may have drawn random numbers.
     random.setstate(state["random"]["python"])
     np.random.set_state(state["random"]["numpy"])  # noqa: NPY002
     torch.random.set_rng_state(state["random"]["torch"])
 
 
 def write_checkpoint(state: dict[str, Any], path: Path) -> None:
-    """Write a captured state to a file: all of it, or what was there before."""
-    replace_whole(path, lambda unfinished: torch.save(state, unfinished))
+    """Write a captured state to a file, atomically."""
+    replace_atomically(path, lambda unfinished: torch.save(state, unfinished))
 
 
 def read_checkpoint(path: Path) -> dict[str, Any]:
     """Return the state in a file that `write_checkpoint` wrote.
 
-    It is read with pickle, which runs what the file says: read only files of your own runs.
+    Pickle reads it and runs whatever code the file holds: read only files of runs that you trust.
     Raises `SettingsError` if the file cannot be read.
     """
     try:
         state: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=False)
     except FileNotFoundError:
         raise SettingsError(
-            f"{path}: no checkpoint there; the run was stopped before its first one: start it anew"
+            f"{path}: no checkpoint there; the run stopped before its first one: start it again"
         ) from None
-    except Exception as error:  # whatever pickle meets in a damaged file
+    except Exception as error:  # a damaged file can make pickle raise anything
         raise SettingsError(f"{path}: the checkpoint cannot be read: {error}") from None
     if state.get("format") != _FORMAT:
         raise SettingsError(
             f"{path}: the checkpoint's format is {state.get('format')!r}, and this version reads "
-            f"{_FORMAT}: resume with the version that wrote it (run.json tells)"
+            f"{_FORMAT}: resume with the version that wrote it (see run.json)"
         )
     return state
 
 
 class Checkpoints(BaseCallback):
-    """Keeps the state before each rollout, and writes it now and then and at the end.
+    """Captures the state before each rollout, and writes it regularly and at the end.
 
     Args:
         path: of the file.
         venv: the environment that is trained on.
-        every: decisions between two writings.
-        extra: what the other callbacks remember; it is kept in the state.
-        written: told after each writing how many decisions the state has seen.
+        every: decisions between two checkpoints.
+        callback_state: the other callbacks' state, a part of the checkpoint.
+        tell_written: after each checkpoint it gets the number of decisions until then.
     """
 
     def __init__(
@@ -112,17 +112,17 @@ class Checkpoints(BaseCallback):
         path: Path,
         venv: GymnasiumVecEnv,
         every: int,
-        extra: dict[str, Any],
-        written: Callable[[int], None],
+        callback_state: dict[str, Any],
+        tell_written: Callable[[int], None],
     ) -> None:
         super().__init__()
         self._path = path
         self._venv = venv
         self._every = every
-        self._extra = extra
-        self._tell_written = written
+        self._callback_state = callback_state
+        self._tell_written = tell_written
         self._state: dict[str, Any] | None = None
-        # The first state is written at once: a run that is killed early can be resumed, too.
+        # The first one is written at once, so that a run that is killed early can resume.
         self._written = -every
 
     def _on_rollout_start(self) -> None:
@@ -134,9 +134,10 @@ class Checkpoints(BaseCallback):
         return True
 
     def finish(self, complete: bool) -> int:
-        """Write the latest state, after the training or before the rollout that was broken off.
+        """Write the last checkpoint and return the number of decisions until then.
 
-        Returns how many decisions it has seen.
+        ``complete`` says whether the last rollout came to its end; otherwise the checkpoint is the
+        state before that rollout.
         """
         if complete:
             self._capture()
@@ -145,7 +146,7 @@ class Checkpoints(BaseCallback):
 
     def _capture(self) -> None:
         model: Any = self.model
-        self._state = capture(model, self._venv, self._extra)
+        self._state = capture(model, self._venv, self._callback_state)
 
     def _write(self) -> None:
         assert self._state is not None

@@ -1,10 +1,10 @@
-"""Learning curves as a file of JSON lines, one a measurement, that a resumed run goes on with."""
+"""Learning curves: a file with one JSON line per measurement, which a resumed run continues."""
 
 import json
 from pathlib import Path
 from typing import Any
 
-from ..experiment.files import write_whole
+from ..experiment.files import write_atomically
 
 STEP = "timesteps"
 
@@ -13,14 +13,14 @@ class CurveWriter:
     """Writes stable-baselines3's log values as lines; one of its "key-value writers".
 
     Args:
-        path: of the file; what it holds of steps after ``resumed_at`` is dropped, for it is about
-            to be written again.
-        resumed_at: the step that a killed run goes on from; 0 begins a new file.
+        path: of the file; lines of steps after ``resumed_at`` are dropped, because the resumed run
+            writes them again.
+        resumed_at: the step at which a run resumes; 0 begins a new file.
     """
 
     def __init__(self, path: Path, resumed_at: int = 0) -> None:
         kept = [row for row in read_curve(path) if row[STEP] <= resumed_at] if resumed_at else []
-        write_whole(path, "".join(map(_line, kept)).encode())
+        write_atomically(path, "".join(map(_line, kept)).encode())
         self._file = path.open("a", encoding="utf-8")
 
     def write(
@@ -37,7 +37,7 @@ class CurveWriter:
 
 
 def read_curve(path: Path) -> list[dict[str, Any]]:
-    """Return the lines of a curve's file; a last one that was cut short by a kill is left out."""
+    """Return the lines of a curve's file, without a last one that a kill cut short."""
     rows = []
     for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else []:
         try:

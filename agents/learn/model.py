@@ -1,4 +1,4 @@
-"""PPO: building the model, keeping it, and using it as a policy."""
+"""PPO: making a model, saving and loading it, and using it as a policy."""
 
 from pathlib import Path
 from typing import Any
@@ -9,12 +9,12 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import VecEnv
 
-from ..experiment.files import replace_whole
+from ..experiment.files import replace_atomically
 from ..experiment.settings import Experiment, Ppo
 from ..measure.policy import Policy
 from .networks import ACTIVATIONS, extractor_arguments
 
-# What stable-baselines3 would save of the training's course.
+# What stable-baselines3 would save, and only a training needs.
 _OF_THE_TRAINING = ("_last_obs", "_last_episode_starts", "ep_info_buffer", "ep_success_buffer")
 
 
@@ -22,7 +22,7 @@ def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
     """Return an untrained PPO; all random numbers come from the experiment's seed."""
     torch.set_num_threads(experiment.training.torch_threads)
     ppo, network = experiment.ppo, experiment.network
-    observation = experiment.env.get("observation", "vector")
+    observation = experiment.config.observation
     features = extractor_arguments(network, observation, venv.get_attr("layout", 0)[0])
     return PPO(
         "CnnPolicy" if observation == "rgb" else "MlpPolicy",
@@ -48,10 +48,9 @@ def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
 
 
 def save_model(model: PPO, path: Path) -> None:
-    """Write the model to ``path``: all of it, or what was there before.
+    """Write the model to ``path``, atomically; `PPO.load` reads it.
 
-    Without the optimiser's state, which is twice as large as the weights and which nobody needs
-    who plays: `PPO.load` takes the file all the same.
+    The optimiser's state, twice as large as the weights, is left out: playing does not need it.
     """
     policy: Any = model.policy
     used = policy.optimizer
@@ -59,13 +58,15 @@ def save_model(model: PPO, path: Path) -> None:
         policy.parameters(), lr=model.lr_schedule(1.0), **policy.optimizer_kwargs
     )
     try:
-        replace_whole(path, lambda unfinished: model.save(unfinished, exclude=_OF_THE_TRAINING))
+        replace_atomically(
+            path, lambda unfinished: model.save(unfinished, exclude=_OF_THE_TRAINING)
+        )
     finally:
         policy.optimizer = used
 
 
 def load_policy(path: Path, experiment: Experiment) -> Policy:
-    """Return the saved model as a policy that plays as the experiment's evaluation says."""
+    """Return a saved model as a policy that plays as the experiment's evaluation says."""
     torch.set_num_threads(experiment.training.torch_threads)
     model = PPO.load(path, device="cpu")
     return ModelPolicy(model, experiment.evaluation.deterministic, experiment.evaluation.seed)
@@ -75,8 +76,8 @@ class ModelPolicy:
     """A model as a policy.
 
     Args:
-        model: it plays as it is at the time.
-        deterministic: whether it takes the likeliest action or draws one.
+        model: may change between two calls.
+        deterministic: whether to take the likeliest action or to draw one.
         seed: of the draws, which leave torch's own random numbers alone.
     """
 
@@ -97,5 +98,5 @@ class ModelPolicy:
 
 
 def _scheduled(ppo: Ppo, start: float) -> float | LinearSchedule:
-    """Return what stable-baselines3 takes: a number, or one that falls to 0 by the end."""
+    """Return a constant, or a schedule that falls to 0 at the end, for stable-baselines3."""
     return start if ppo.schedule == "constant" else LinearSchedule(start, 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""What a network makes of an observation before the policy's and the value function's layers."""
+"""Feature extractors: what comes before the layers of the policy and of the value function."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -24,16 +24,16 @@ ACTIVATIONS: dict[str, type[nn.Module]] = {
 
 
 class LatticeExtractor(BaseFeaturesExtractor):
-    """Sees the bricks of a `vector` observation as the picture that they are.
+    """Sees the bricks of a `vector` observation as a picture.
 
-    The slice ``bricks`` goes as a plane [18, 11] through convolutions; what they make of it stands
-    beside all the other numbers.
+    The bricks go through convolutions as a plane [18, 11]; the features are the convolutions'
+    result and all other numbers of the observation.
 
     Args:
         observation_space: of the vectors.
-        bricks: where the lattice's cells are, row by row.
+        bricks: first and last index (exclusive) of the lattice's cells, row by row.
         channels: of the convolutions, each of which halves the picture.
-        embedding: what the convolutions end in.
+        embedding: how many features the convolutions return.
         activation: between the layers.
     """
 
@@ -86,7 +86,7 @@ class PlanesExtractor(BaseFeaturesExtractor):
 def convolutions(
     shape: tuple[int, ...], channels: Sequence[int], embedding: int, activation: str
 ) -> list[nn.Module]:
-    """Return layers from pictures of a shape (channels, rows, columns) to ``embedding`` numbers."""
+    """Return layers from pictures [channels, rows, columns] to ``embedding`` numbers."""
     depth, rows, columns = shape
     layers: list[nn.Module] = []
     for width in channels:
@@ -103,10 +103,10 @@ def extractor_arguments(
 
     Args:
         network: the settings.
-        observation: the kind of the observation.
+        observation: its kind: ``"vector"``, ``"grid"`` or ``"rgb"``.
         layout: its named slices.
     """
-    chosen = network.features
+    chosen: str = network.features
     if chosen == "auto":
         chosen = {"vector": "lattice", "grid": "planes", "rgb": "nature"}[observation]
     common = {

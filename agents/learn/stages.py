@@ -10,32 +10,32 @@ from ..experiment.settings import Curriculum, Experiment
 
 
 class Stages(BaseCallback):
-    """Begins the curriculum's stages in time, each with a new episode in every world.
+    """Begins each stage of the curriculum at its time, with a new episode in every world.
 
     Args:
-        experiment: its ``[curriculum]`` says which stages there are.
+        experiment: its ``[curriculum]`` has the stages.
         venv: the environment that is trained on.
-        memory: what it remembers, here from a checkpoint; kept up to date in place.
+        state: this callback's, empty or from a checkpoint; it is changed in place.
     """
 
     def __init__(
-        self, experiment: Experiment, venv: GymnasiumVecEnv, memory: dict[str, Any]
+        self, experiment: Experiment, venv: GymnasiumVecEnv, state: dict[str, Any]
     ) -> None:
         super().__init__()
         self._curriculum = experiment.curriculum
         self._timesteps = experiment.training.timesteps
         self._venv = venv
-        self._memory = memory
-        memory.setdefault("stage", 0)
+        self._state = state
+        state.setdefault("stage", 0)
 
     def _on_rollout_start(self) -> None:
         stage = stage_at(self._curriculum, self.model.num_timesteps / self._timesteps)
-        if stage == self._memory["stage"]:
+        if stage == self._state["stage"]:
             return
-        self._memory["stage"] = stage
+        self._state["stage"] = stage
         self._venv.set_options(stage_options(self._curriculum, stage, self._venv.num_envs))
         model: Any = self.model
-        # Through the model's own environment, which may have wrapped ours.
+        # The model may have wrapped our environment in its own.
         model._last_obs = model.env.reset()
         model._last_episode_starts = np.ones(self._venv.num_envs, np.bool_)
 
@@ -44,12 +44,12 @@ class Stages(BaseCallback):
 
 
 def stage_at(curriculum: Curriculum, part: float) -> int:
-    """Return the stage after a part of the training, from 0 on."""
+    """Return the index of the stage after a part of the training."""
     return sum(part >= begins for begins in curriculum.stages)
 
 
 def stage_options(curriculum: Curriculum, stage: int, num_worlds: int) -> list[dict[str, Any]]:
-    """Return each world's options for `reset` in a stage."""
+    """Return the options for `reset` of each world in a stage."""
     options: list[dict[str, Any]] = [{} for _ in range(num_worlds)]
     for world, of_world in enumerate(options):
         if curriculum.difficulty:

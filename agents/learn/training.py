@@ -1,4 +1,4 @@
-"""A training run from its beginning, or from a checkpoint, to its end."""
+"""A training run, from its beginning or a checkpoint to its end."""
 
 import signal
 import time
@@ -12,9 +12,9 @@ from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputF
 from torch.utils.tensorboard import SummaryWriter
 
 from ..adapter import GymnasiumVecEnv
+from ..experiment.errors import SettingsError
 from ..experiment.provenance import weights_hash
 from ..experiment.runs import RunFolder
-from ..experiment.schema import SettingsError
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
 from ..measure.episodes import adapt
@@ -22,8 +22,8 @@ from .callbacks import GameStatistics, ProgressBar, StopRequest
 from .checkpoints import Checkpoints, read_checkpoint, restore
 from .curves import CurveWriter
 from .model import make_model, save_model
+from .periodic_validation import Judge, PeriodicValidation
 from .stages import Stages, stage_options
-from .validation import Judge, Validation
 
 INTERRUPTED = "interrupted"
 FINISHED = "finished"
@@ -37,15 +37,15 @@ def train(
 ) -> str:
     """Train until the budget is spent, validation ends it, or Ctrl-C; return how it ended.
 
-    `FINISHED`, `INTERRUPTED` or validation's reason; ``run.json`` says it, too. Ctrl-C is obeyed
-    between two decisions and leaves a checkpoint from which ``resume`` goes on; a second one is
-    Python's own.
+    The outcome is `FINISHED`, `INTERRUPTED` or validation's reason; ``run.json`` has it, too.
+    Ctrl-C ends the training between two decisions and leaves a checkpoint for ``resume``; a second
+    one raises KeyboardInterrupt.
 
     Args:
         experiment: the run's settings.
         folder: gets model, checkpoint, curves and notes.
-        resume: whether to go on from the folder's checkpoint.
-        on_measure: told of each validation; it may return a reason to end the training.
+        resume: whether to begin with the folder's checkpoint.
+        on_measure: gets each validation; it may return a reason to end the training.
 
     Raises:
         SettingsError: the environment refuses its arguments, or there is no checkpoint.
@@ -65,10 +65,10 @@ def _train(
     on_measure: Judge | None,
 ) -> str:
     state = read_checkpoint(folder.checkpoint) if resume else None
-    memory: dict[str, Any] = state["extra"] if state is not None else {}
+    callback_state: dict[str, Any] = state["callbacks"] if state is not None else {}
     model = make_model(experiment, venv)
     stop = StopRequest()
-    validation = _validation(experiment, folder, memory, stop, on_measure)
+    validation = _validation(experiment, folder, callback_state, stop, on_measure)
     if state is not None:
         restore(state, model, venv)
     else:
@@ -78,11 +78,12 @@ def _train(
         folder.checkpoint,
         venv,
         experiment.training.checkpoint_every,
-        memory,
+        callback_state,
         lambda last: folder.note_session(started, first, last),
     )
-    # In this order: a checkpoint holds what the others remember after their work.
-    callbacks: list[BaseCallback] = [GameStatistics(), Stages(experiment, venv, memory)]
+    # Checkpoints come after the callbacks whose state they hold.
+    stages = Stages(experiment, venv, callback_state)
+    callbacks: list[BaseCallback] = [GameStatistics(), stages]
     callbacks += [validation] if validation is not None else []
     callbacks += [checkpoints, ProgressBar(), stop]
     model.set_logger(_logger(folder, first))
@@ -104,32 +105,32 @@ def _train(
     outcome = stop.reason or FINISHED
     save_model(model, folder.model)
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
-    folder.note(outcome=outcome, timesteps=last, weights=hashed)
+    folder.add_notes(outcome=outcome, timesteps=last, weights=hashed)
     return outcome
 
 
 def check_resumable(folder: RunFolder) -> None:
-    """Refuse a run that has ended, with a `SettingsError`."""
-    outcome = folder.about().get("outcome")
+    """Raise `SettingsError` if the run has ended."""
+    outcome = folder.read_notes().get("outcome")
     if outcome not in ("unfinished", INTERRUPTED):
         raise SettingsError(
             f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
-            f"`arkanoid evaluate {folder.path}` measures it"
+            f"to measure it: arkanoid evaluate {folder.path}"
         )
 
 
 def _validation(
     experiment: Experiment,
     folder: RunFolder,
-    memory: dict[str, Any],
+    callback_state: dict[str, Any],
     stop: StopRequest,
     on_measure: Judge | None,
-) -> Validation | None:
+) -> PeriodicValidation | None:
     if not experiment.validation.every:
         return None
-    return Validation(
+    return PeriodicValidation(
         experiment,
-        memory.setdefault("validation", {}),
+        callback_state.setdefault("validation", {}),
         lambda model: save_model(model, folder.best),
         stop.request,
         on_measure,
@@ -143,7 +144,7 @@ def _logger(folder: RunFolder, first: int) -> Logger:
 
 
 class TensorBoard(TensorBoardOutputFormat):
-    """TensorBoard's events; those that a killed run wrote after its checkpoint are purged."""
+    """TensorBoard's events; it purges those that a killed run wrote after its checkpoint."""
 
     def __init__(self, folder: str, first: int) -> None:
         self.writer = SummaryWriter(folder, purge_step=first + 1 if first else None)
@@ -151,7 +152,7 @@ class TensorBoard(TensorBoardOutputFormat):
 
 
 class _Curve(CurveWriter, KVWriter):
-    """The curves' file as stable-baselines3 knows its writers."""
+    """The curves' file as one of stable-baselines3's writers."""
 
     def __init__(self, folder: RunFolder, first: int) -> None:
         super().__init__(folder.curve, first)
@@ -159,17 +160,17 @@ class _Curve(CurveWriter, KVWriter):
 
 @contextmanager
 def _on_interrupt(request: Callable[[], None]) -> Iterator[None]:
-    """Call ``request`` on the first Ctrl-C within."""
+    """Call ``request`` at the first Ctrl-C inside the block."""
     previous = signal.getsignal(signal.SIGINT)
 
-    def handle(number: int, frame: FrameType | None) -> None:
+    def handle(signal_number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGINT, previous)
         request()
 
     try:
         signal.signal(signal.SIGINT, handle)
     except ValueError:
-        # Only the main thread may handle signals; elsewhere Ctrl-C is not ours to handle.
+        # Only the main thread may handle signals.
         yield
         return
     try:

@@ -1,4 +1,4 @@
-"""A search for hyper-parameters: what is searched, and how a trial is trained and judged."""
+"""A search for hyper-parameters: the search space, and how trials are trained and judged."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -6,9 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import tomli_w
+
+from ..experiment.errors import SettingsError
+from ..experiment.reading import check_value, read_toml
 from ..experiment.runs import RunFolder
-from ..experiment.schema import SettingsError, check_value, parse_toml_value, toml_table, toml_value
-from ..experiment.settings import BEST, Experiment, load_experiment, read_toml
+from ..experiment.settings import BEST, Experiment, load_experiment
 
 if TYPE_CHECKING:
     import optuna
@@ -21,11 +24,11 @@ class Parameter:
     """A setting that is searched: among choices, or between bounds.
 
     Attributes:
-        key: of the setting, dotted.
-        choices: TOML texts of its values; none if there are bounds.
-        low, high: the bounds, which may be taken.
-        log: whether it is drawn on a logarithmic scale.
-        step: what it is a multiple of beyond ``low``; None: anything, or 1 for integers.
+        key: the setting's, dotted.
+        choices: JSON texts of its values; empty if there are bounds.
+        low, high: the bounds, both included.
+        log: whether values are drawn on a logarithmic scale.
+        step: values are ``low`` plus a multiple of it; None: any values, or 1 for integers.
     """
 
     key: str
@@ -36,9 +39,12 @@ class Parameter:
     step: float | None = None
 
     def suggest(self, trial: "optuna.Trial") -> str:
-        """Return the TOML text of the value that a trial shall take."""
+        """Return a trial's value as the command line takes it."""
         if self.choices:
-            return str(trial.suggest_categorical(self.key, self.choices))
+            text = str(trial.suggest_categorical(self.key, self.choices))
+            # Texts have no quotes there; of all else, JSON is TOML.
+            value = json.loads(text)
+            return value if isinstance(value, str) else text
         if isinstance(self.low, int) and isinstance(self.high, int):
             step = 1 if self.step is None else int(self.step)
             return str(trial.suggest_int(self.key, self.low, self.high, step=step, log=self.log))
@@ -48,14 +54,14 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Space:
-    """What is searched.
+class SearchSpace:
+    """What is searched, and how trials are compared.
 
     Attributes:
-        parameters: the settings.
-        measure: validation's mean that is to be large.
-        startup: trials before any is broken off.
-        warmup: decisions of a trial before it may be broken off.
+        parameters: the settings that are searched.
+        measure: the measure of validation whose mean should be large.
+        startup: trials before the first one may be stopped early.
+        warmup: decisions before a trial may be stopped early.
     """
 
     parameters: tuple[Parameter, ...]
@@ -64,10 +70,10 @@ class Space:
     warmup: int = 0
 
 
-def load_space(name: str) -> Space:
+def load_space(name: str) -> SearchSpace:
     """Return the search space of a TOML file, or of a packaged one's name.
 
-    Raises `SettingsError` where it names a setting that is none, or values that it cannot take.
+    Raises `SettingsError` if it names an unknown setting, or values that the setting cannot take.
     """
     source, table = read_toml(name, suffix=".space.toml")
     known = ("measure", "startup", "warmup", "parameters")
@@ -85,11 +91,11 @@ def load_space(name: str) -> Space:
     if not isinstance(parameters, Mapping) or not parameters:
         raise SettingsError(f"{source}: [parameters] must have at least one setting to search")
     found = tuple(_parameter(key, item, source) for key, item in parameters.items())
-    return Space(found, measure, **counts)
+    return SearchSpace(found, measure, **counts)
 
 
 def _parameter(key: str, item: Any, source: str) -> Parameter:
-    """Return a line of the table [parameters]."""
+    """Return the parameter that a line of the table [parameters] describes."""
     where = f"{source}: parameters.{key!r}"
     if not isinstance(item, Mapping):
         raise SettingsError(f"{where} must be a table such as {{low = 0.1, high = 1.0}}")
@@ -97,7 +103,7 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
         choices = item["choices"]
         if not isinstance(choices, Sequence) or isinstance(choices, str) or not choices:
             raise SettingsError(f"{where}: 'choices' must be a list of values")
-        texts = tuple(toml_value(choice) for choice in choices)
+        texts = tuple(json.dumps(choice) for choice in choices)
         for choice in choices:
             check_value(Experiment, key, choice, source)
         return Parameter(key, texts)
@@ -116,10 +122,10 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
     return Parameter(key, low=low, high=high, log=bool(log), step=step)
 
 
-def open_study(folder: Path, space: Space, seed: int) -> "optuna.Study":
-    """Return the study that is kept in a folder, a new one if there is none.
+def open_study(folder: Path, space: SearchSpace, seed: int) -> "optuna.Study":
+    """Return the study in a folder; make a new one if there is none.
 
-    It is a file that needs no server, and several processes may work on it at once.
+    A study is a file that needs no server, and several processes may work on it at once.
     """
     import optuna
     from optuna.storages import JournalStorage
@@ -131,7 +137,7 @@ def open_study(folder: Path, space: Space, seed: int) -> "optuna.Study":
     study = optuna.create_study(
         storage=storage, study_name="arkanoid", direction="maximize", load_if_exists=True
     )
-    # A search that goes on must not draw again what it drew at first.
+    # A resumed search must not repeat its first draws.
     study.sampler = optuna.samplers.TPESampler(seed=seed + len(study.trials))
     study.pruner = optuna.pruners.MedianPruner(space.startup, space.warmup)
     return study
@@ -139,13 +145,13 @@ def open_study(folder: Path, space: Space, seed: int) -> "optuna.Study":
 
 def search(
     study: "optuna.Study",
-    space: Space,
+    space: SearchSpace,
     config: str,
     overrides: list[tuple[str, str]],
     folder: Path,
     trials: int,
 ) -> None:
-    """Train trials until the study has so many that are complete or broken off."""
+    """Train trials until ``trials`` of the study are complete or stopped early."""
     from optuna.study import MaxTrialsCallback
     from optuna.trial import TrialState
 
@@ -160,12 +166,12 @@ def search(
 
 def _run_trial(
     trial: "optuna.Trial",
-    space: Space,
+    space: SearchSpace,
     config: str,
     overrides: list[tuple[str, str]],
     folder: Path,
 ) -> float:
-    """Train once; return the last measurement."""
+    """Train one trial; return its last measurement."""
     import optuna
 
     from .training import INTERRUPTED, train
@@ -174,7 +180,7 @@ def _run_trial(
     try:
         experiment = load_experiment(config, [*overrides, *chosen])
     except SettingsError as error:
-        # Each value is legal; together they are not (a batch that does not divide, say).
+        # Each value is legal, but not all together: a batch may not divide the rollout.
         print(f"trial {trial.number}: {error}")
         raise optuna.TrialPruned from None
     experiment = replace(
@@ -204,24 +210,23 @@ def _tell(study: "optuna.Study", trial: "optuna.trial.FrozenTrial") -> None:
     print(f"trial {trial.number}: {trial.state.name.lower()} {value}{json.dumps(trial.params)}")
 
 
-def best_as_toml(study: "optuna.Study", space: Space) -> str:
+def best_as_toml(study: "optuna.Study", space: SearchSpace) -> str:
     """Return the best trial's settings as TOML; raises `SettingsError` if there is none yet."""
     import optuna
 
     try:
         best = study.best_trial
     except ValueError:
-        raise SettingsError("no trial is complete yet: there is no best one") from None
+        raise SettingsError("no trial is complete yet, so there is no best one") from None
     complete = study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,))
     table: dict[str, Any] = {}
     for parameter in space.parameters:
         value = best.params[parameter.key]
-        # Choices are texts of TOML, numbers are themselves.
-        value = parse_toml_value(value) if parameter.choices else value
+        value = json.loads(value) if parameter.choices else value
         *path, name = parameter.key.split(".")
         inner = table
         for part in path:
             inner = inner.setdefault(part, {})
         inner[name] = value
     head = f"# {space.measure} {best.value:.4f}, trial {best.number}, of {len(complete)} complete"
-    return f"{head}\n{toml_table(table)}"
+    return f"{head}\n{tomli_w.dumps(table)}"

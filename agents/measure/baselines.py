@@ -15,7 +15,7 @@ from .policy import Policy, encode_actions, paddle_reach
 
 
 class NoOp:
-    """Only watches."""
+    """Does nothing."""
 
     def __init__(self, space: Any) -> None:
         self._space = space
@@ -28,7 +28,7 @@ class NoOp:
 class RandomPolicy:
     """Draws every action with the same probability, from a generator of its own.
 
-    What a world's n-th action is depends neither on which other worlds still play nor on them.
+    A world's n-th action does not depend on which other worlds still play.
     """
 
     def __init__(self, space: Any, num_worlds: int, seed: int) -> None:
@@ -49,7 +49,7 @@ class BallFollower:
 
     ``layout`` names the slices of an observation: ``"paddle"`` and ``"ball_x"`` begin with the
     paddle's middle and the first ball's position across the field, on the same scale. ``reach`` is
-    how far the paddle can go in a decision, on that scale.
+    how far the paddle can move in a decision, on that scale.
     """
 
     def __init__(self, space: Any, layout: Mapping[str, slice], reach: float) -> None:
@@ -65,7 +65,7 @@ class BallFollower:
 
 
 def make_baseline(name: str, worlds: VectorEnv[Any, Any, Any], seed: int) -> Policy:
-    """Return the baseline of a name, to play in ``worlds`` with the observation ``vector``."""
+    """Return a baseline by its name, to play in ``worlds``, whose observation is ``vector``."""
     space = worlds.single_action_space
     layout: Mapping[str, slice] = native(worlds).layout
     if name == "no-op":

@@ -1,4 +1,4 @@
-"""Playing whole episodes with a policy, one a seed, many at once."""
+"""Playing whole episodes with a policy, one per seed, many at once."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from ..adapter import GymnasiumVecEnv
 from .policy import Policy
-from .suites import Start
+from .suites import WHOLE_GAMES, EpisodeStart
 
-# What an episode's info tells of it: as it is at its end, or summed over its decisions.
+# What infos tell of an episode: the value at its end, or the sum over its decisions.
 FINAL_KEYWORDS = ("score", "lives", "round", "bricks_left")
 SUMMED_KEYWORDS = ("hits", "rounds_cleared")
 
-# What is measured of an episode. `cleared` is 1 if the level that it began on was cleared.
+# The measures of an episode. `cleared` is 1 if the level that it began on was cleared.
 MEASURES = ("cleared", "return", "steps", *FINAL_KEYWORDS, *SUMMED_KEYWORDS)
 
 
@@ -28,20 +28,20 @@ def play_episodes(
     worlds: VectorEnv[Any, Any, Any],
     policy: Policy,
     seed: int,
-    starts: Sequence[Start] = (Start("whole games"),),
-    whole: bool = True,
+    starts: Sequence[EpisodeStart] = (WHOLE_GAMES,),
+    whole_games: bool = True,
 ) -> dict[str, NDArray[np.float64]]:
-    """Play one episode in each world, as many on each level; return what was reached.
+    """Play one episode in each world, equally many on each level; return their measures.
 
-    An episode depends on nothing but its seed, its level and the policy. Only a world's first one
-    counts: taking whichever episodes end first would favour short ones.
+    An episode depends on nothing but its seed, its level and the policy. Only the first one of each
+    world counts: to take whichever episodes end first would favour short ones.
 
     Args:
         worlds: native and in SAME_STEP mode, as many as there are levels times episodes.
         policy: who plays.
-        seed: of each level's first episode; the next ones follow.
-        starts: how episodes begin, one a level.
-        whole: whether an episode lasts until the game is over, or until its level is cleared.
+        seed: of each level's first episode; the next episodes get the following seeds.
+        starts: how episodes begin, one for each level.
+        whole_games: whether an episode lasts until the game is over, or until its level is cleared.
 
     Returns:
         For each of `MEASURES` an array [episodes, levels].
@@ -67,13 +67,13 @@ def play_episodes(
         for name in FINAL_KEYWORDS:
             measured[name][playing] = latest[name][playing]
         measured["cleared"][playing] = measured["rounds_cleared"][playing] > 0
-        ends = over[playing] if whole else over[playing] | (measured["cleared"][playing] > 0)
+        ends = over[playing] if whole_games else over[playing] | (measured["cleared"][playing] > 0)
         playing = playing[~ends]
     return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
 
 
 def begin_episodes(
-    worlds: VectorEnv[Any, Any, Any], seed: int, starts: Sequence[Start], episodes: int
+    worlds: VectorEnv[Any, Any, Any], seed: int, starts: Sequence[EpisodeStart], episodes: int
 ) -> tuple[Any, dict[str, Any]]:
     """Begin the episodes of every level, level by level; return observations and infos."""
     seeds = [seed + episode for _ in starts for episode in range(episodes)]
@@ -82,7 +82,7 @@ def begin_episodes(
     for index, start in enumerate(starts):
         mask = np.zeros(worlds.num_envs, np.bool_)
         mask[index * episodes : (index + 1) * episodes] = True
-        # What is not said anew would stay in force from the worlds' earlier episodes.
+        # Without these the options of a world's earlier episodes would stay in force.
         as_configured = {"level": None, "difficulty": None}
         options = {**as_configured, **(start.options or {}), "reset_mask": mask}
         observations, infos = worlds.reset(seed=seeds, options=options)  # type: ignore[arg-type]
@@ -90,7 +90,7 @@ def begin_episodes(
 
 
 def _latest(infos: dict[str, Any], over: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
-    """Return what a step's info tells, of the final one where an episode is over."""
+    """Return what a step's infos tell; where an episode is over, its final info."""
     names = FINAL_KEYWORDS + SUMMED_KEYWORDS
     if not over.any():
         return {name: infos[name] for name in names}

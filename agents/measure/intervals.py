@@ -7,35 +7,36 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 RESAMPLES = 10_000
-# Of many levels at once, each of which is resampled.
+# For many levels at once, each of which is resampled.
 STRATIFIED_RESAMPLES = 2_000
-LEVEL = 0.95
-# Numbers that are resampled at once: their memory stays below some tens of megabytes.
+CONFIDENCE = 0.95
+# Numbers that are resampled at once: they take at most some tens of megabytes.
 _CHUNK = 2_000_000
 
-# Takes an array [resamples, samples] and returns a number a resample.
+# Takes an array [resamples, samples] and returns one number per resample.
 Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 class Interval(NamedTuple):
     """A mean, or another statistic, and the ends of its interval, in the unit of the data."""
 
-    mean: float
+    estimate: float
     low: float
     high: float
 
     def __str__(self) -> str:
-        """Return ``mean ± half of the interval's width`` with three significant digits or more."""
+        """Return ``estimate ± half of the width`` with three significant digits or more."""
         half = (self.high - self.low) / 2
-        digits = 0 if abs(self.mean) >= 100 else 1 if abs(self.mean) >= 10 else 2
-        return f"{self.mean:.{digits}f} ± {half:.{digits}f}"
+        digits = 0 if abs(self.estimate) >= 100 else 1 if abs(self.estimate) >= 10 else 2
+        return f"{self.estimate:.{digits}f} ± {half:.{digits}f}"
 
 
 def bootstrap_interval(samples: ArrayLike, seed: int = 0) -> Interval:
     """Return the mean of samples [n] with its 95 % percentile bootstrap interval.
 
-    Percentiles of the means of 10 000 resamples with replacement (Efron and Tibshirani, An
-    Introduction to the Bootstrap, 1993, chapter 13). Raises ValueError without samples.
+    Its ends are percentiles of the means of 10 000 resamples with replacement (Efron and
+    Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13). Raises ValueError without
+    samples.
     """
     values = np.asarray(samples, dtype=np.float64)
     if values.ndim != 1 or values.size == 0:
@@ -53,10 +54,9 @@ def stratified_interval(
 ) -> Interval:
     """Return a statistic of samples [n, strata] with its 95 % stratified bootstrap interval.
 
-    Each stratum (a level) keeps its n samples in every resample: which of them there are is drawn
-    with replacement, for each stratum on its own. The statistic is that of all n × strata numbers
-    together (Agarwal et al., Deep Reinforcement Learning at the Edge of the Statistical Precipice,
-    2021). Raises ValueError without samples.
+    Every resample draws n samples of each stratum (a level), with replacement, and takes the
+    statistic of all n × strata numbers together (Agarwal et al., Deep Reinforcement Learning at the
+    Edge of the Statistical Precipice, 2021). Raises ValueError without samples.
     """
     values = np.asarray(samples, dtype=np.float64)
     if values.ndim != 2 or values.size == 0:
@@ -69,7 +69,7 @@ def stratified_interval(
         count = min(at_once, resamples - first)
         chosen = random.integers(len(values), size=(count, *values.shape))
         drawn.append(statistic(values[chosen, strata].reshape(count, -1)))
-    tail = (1 - LEVEL) / 2
+    tail = (1 - CONFIDENCE) / 2
     low, high = np.quantile(np.concatenate(drawn), [tail, 1 - tail])
     (point,) = statistic(values.reshape(1, -1))
     return Interval(float(point), float(low), float(high))
@@ -84,8 +84,8 @@ def mean(samples: NDArray[np.float64]) -> NDArray[np.float64]:
 def interquartile_mean(samples: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the means of the middle halves of samples [resamples, n].
 
-    A quarter of the samples, rounded down, is left out at either end: outliers do not count, and
-    yet, other than in the median, half of the samples does.
+    It leaves out a quarter of the samples, rounded down, at either end: outliers do not count, yet
+    half of the samples does, unlike in the median.
     """
     cut = samples.shape[1] // 4
     means: NDArray[np.float64] = np.sort(samples, axis=1)[:, cut : samples.shape[1] - cut].mean(

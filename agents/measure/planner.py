@@ -1,7 +1,7 @@
-"""A player that looks ahead with the game itself: what it foresees comes about exactly.
+"""A player that looks ahead with the game itself, and so foresees exactly what happens.
 
-It is no agent but an upper bound to compare agents with: it sees the whole state, the random
-numbers among it, and tries out what it might do before it does it.
+It is not an agent but an upper bound to compare agents with: it knows the whole state, random
+numbers included, and tries plans out in copies of the world.
 """
 
 from typing import Any
@@ -15,23 +15,23 @@ from ...envs.rules import BALL_RADIUS, FIELD_HEIGHT, FIELD_WIDTH, PADDLE_TOP
 from ..experiment.worlds import native
 from .policy import encode_actions, paddle_reach
 
-# Where on the paddle the next ball shall land, in half widths from its middle: what is tried out.
+# Where on the paddle the next ball may land, in half widths from its middle: one plan for each.
 OFFSETS = np.linspace(-0.9, 0.9, 13)
-# How many decisions are looked ahead, and how many of them are played, at the most, before the
-# planner looks again. A ball is away from the paddle for about 30.
+# How many decisions the planner looks ahead, and how many it plays at most before it looks again.
+# A ball is away from the paddle for about 30.
 HORIZON = 80
 PLAYED = 24
-# A life is worth more than all that can be gained within the horizon.
+# A life is worth more than anything that can be gained within the horizon.
 PRICE_OF_A_LIFE = 10.0
-# What comes later counts a little less: of two plans that gain the same, the faster one is chosen.
+# Later gains count a little less: of two plans that gain the same, the faster one wins.
 DISCOUNT = 0.995
 
 
 class Planner:
-    """Plays in ``worlds`` the best of a few plans, found by playing each of them in a copy.
+    """Plays the best of a few plans in each of ``worlds``; it finds it by playing all in copies.
 
-    A plan is to catch the next ball with a certain place of the paddle, and further ones with its
-    middle. ``worlds`` must be native and have the observation ``vector``.
+    A plan catches the next ball at a certain place of the paddle, and later ones at its middle.
+    ``worlds`` must be native and have the observation ``vector``.
     """
 
     def __init__(self, worlds: VectorEnv[Any, Any, Any], seed: int = 0) -> None:
@@ -44,11 +44,11 @@ class Planner:
         self._random = np.random.default_rng(seed)
 
     def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
-        """Return the next actions of the plans, new ones where they are used up."""
+        """Return the next actions of the plans; make a new plan where one is used up."""
         actions = []
         for world in worlds.tolist():
             if not self._plans.get(world):
-                # The first action last, for it is taken from the end.
+                # The first action last, because actions are taken from the end.
                 self._plans[world] = self._plan(world)[::-1]
             actions.append(self._plans[world].pop())
         return np.array(actions)
@@ -59,7 +59,7 @@ class Planner:
         observations, _ = scouts.spread(self._worlds.snapshot(world))
         count = len(OFFSETS)
         values = np.zeros(count)
-        # Its episode goes on; and the next ball has not landed on the paddle.
+        # Scouts whose episode goes on; scouts that still wait for the next ball to land.
         playing, waiting = np.ones(count, np.bool_), np.ones(count, np.bool_)
         landed = np.full(count, PLAYED)
         taken = []
@@ -78,7 +78,7 @@ class Planner:
             lands = waiting & rises & low
             landed[lands] = np.minimum(landed[lands], decision + 1)
             waiting &= ~lands
-        # Equal plans are drawn from, so that no loop lasts for ever.
+        # Of equal plans one is drawn, so that the game cannot repeat itself for ever.
         best = self._random.choice(np.flatnonzero(values >= values.max() - 1e-12))
         return [actions[best] for actions in taken[: landed[best]]]
 
@@ -94,8 +94,8 @@ class Planner:
     def _lowest_falling(self, observations: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.bool_]]:
         """Return where the next ball comes down to the paddle, and whether one is falling.
 
-        Of balls that rise, the place of the first one. Bricks and enemies in the way are left out:
-        the trial tells what they change.
+        If all balls rise, it is the place of the first one. Bricks and enemies in the way are
+        ignored here; playing the plan tells what they change.
         """
         layout = self._scouts.layout
         rows = np.arange(len(observations))
@@ -104,7 +104,7 @@ class Planner:
         vx, vy = observations[:, layout["ball_vx"]], observations[:, layout["ball_vy"]]
         height = self._heights(observations) - PADDLE_TOP - BALL_RADIUS
         falls = there & (vy < 0) & (height > -PADDLE_TOP)
-        # In ticks times the fastest ball's speed, by which velocities are divided.
+        # In ticks times the speed of the fastest ball, because observed velocities are parts of it.
         times = np.where(falls, height / np.where(falls, -vy, 1.0), np.inf)
         next_ball = times.argmin(axis=1)
         first = np.where(falls.any(axis=1), next_ball, there.argmax(axis=1))
@@ -114,7 +114,7 @@ class Planner:
         return _between_walls(landing), any_falls
 
     def _heights(self, observations: NDArray[Any]) -> NDArray[Any]:
-        """Return the balls' heights; those of balls that are not there are the field's."""
+        """Return the balls' heights; a missing ball gets the field's height."""
         layout = self._scouts.layout
         there = observations[:, layout["ball_in_play"]] > 0
         heights = (observations[:, layout["ball_y"]] + 1.0) * (FIELD_HEIGHT / 2)
@@ -122,7 +122,7 @@ class Planner:
 
 
 def _between_walls(x: NDArray[Any]) -> NDArray[Any]:
-    """Return where a ball is that would be at x without walls, by mirrors."""
+    """Return where walls reflect a ball to that would be at x without them."""
     width = FIELD_WIDTH - 2 * BALL_RADIUS
     place = np.mod(x - BALL_RADIUS, 2 * width)
     return BALL_RADIUS + np.minimum(place, 2 * width - place)

@@ -1,4 +1,4 @@
-"""What plays: a policy, and how it says what it wants in every form of actions."""
+"""A policy, and its moves in each form that actions can have."""
 
 from typing import Any, Protocol
 
@@ -12,20 +12,21 @@ from ..experiment.worlds import native
 
 
 class Policy(Protocol):
-    """Whoever plays."""
+    """An agent or a baseline."""
 
     def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
-        """Return actions [n, ...] for observations [n, ...] of the worlds of these indices [n]."""
+        """Return actions [n, ...] for observations [n, ...] of worlds, given by indices [n]."""
         ...
 
 
 def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArray[Any]:
-    """Return the actions that move the paddle, and fire where one can.
+    """Return the actions that move the paddle, and fire if the action space can.
 
     Args:
-        space: `Discrete`, (no-op, left, right), perhaps once more with fire; or velocity and fire.
-        moves: how far, in what the paddle can go in a decision, [n]. A discrete action goes all the
-            way or not at all, whichever ends nearer: otherwise the paddle would tremble.
+        space: `Discrete`: no-op, left, right, and perhaps each with fire; or `Box`: velocity and
+            fire.
+        moves: how far, [n]; 1 is the most that the paddle can move in a decision. A discrete action
+            moves so far or not at all, whichever ends nearer: otherwise the paddle would tremble.
         fire: whether to fire.
     """
     if isinstance(space, Discrete):
@@ -36,5 +37,5 @@ def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArr
 
 
 def paddle_reach(worlds: VectorEnv[Any, Any, Any]) -> float:
-    """Return how far the paddle can go in a decision, in brick widths."""
+    """Return how far the paddle can move in a decision, in brick widths."""
     return PADDLE_SPEED * float(native(worlds).config.frame_skip)

@@ -1,4 +1,4 @@
-"""On which levels a policy is measured, and how an episode is begun on each."""
+"""Suites: the levels that a policy is measured on, and how an episode begins on each."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,18 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from ...envs.levels.files import CAMPAIGN, load_round
-from ...envs.levels.plan import TEST_SEEDS, seed_range
-from ..experiment.schema import SettingsError
+from ...envs.levels.plan import TEST_SEEDS, campaign_names, check_boss, seed_range
+from ..experiment.errors import SettingsError
 from ..experiment.settings import Experiment
+
+# Stands for all named rounds of the experiment's game.
+NAMED = "named"
 
 
 @dataclass(frozen=True)
-class Start:
+class EpisodeStart:
     """How an episode begins.
 
     Attributes:
-        name: of the level, for tables.
+        name: the level's, for tables.
         options: for the environment's `reset`; None begins a game as it is configured.
     """
 
@@ -25,38 +27,42 @@ class Start:
     options: dict[str, Any] | None = None
 
 
+WHOLE_GAMES = EpisodeStart("whole games")
+
+
 @dataclass(frozen=True)
 class Suite:
     """Levels that are measured together.
 
     Attributes:
-        starts: one a level.
-        episodes: of each.
-        whole: whether an episode lasts as long as the game, or until the level is cleared.
+        starts: one for each level.
+        episodes: on each level.
+        whole_games: whether an episode lasts until the game is over, or until its level is cleared.
     """
 
-    starts: tuple[Start, ...]
+    starts: tuple[EpisodeStart, ...]
     episodes: int
-    whole: bool = False
+    whole_games: bool = False
 
 
 def make_suites(experiment: Experiment) -> dict[str, Suite]:
     """Return the suites of an experiment's evaluation by their names.
 
-    Training on the campaign is training on the named rounds: then there is no suite ``training``
-    beside ``named``. Raises `SettingsError` if the experiment's levels are none.
+    An agent that trains on the campaign trains on the named rounds: its suite ``training`` would
+    repeat ``named``, and is left out. Raises `SettingsError` if a level of the experiment does not
+    exist.
     """
     settings = experiment.evaluation
-    levels = experiment.env.get("levels", "campaign")
+    levels = experiment.config.levels
     suites: dict[str, Suite] = {}
     for name in settings.suites:
         if name == "games":
-            suites[name] = Suite((Start("whole games"),), settings.episodes, whole=True)
+            suites[name] = Suite((WHOLE_GAMES,), settings.episodes, whole_games=True)
         elif name == "named":
-            suites[name] = Suite(_named(experiment), settings.level_episodes)
+            suites[name] = Suite(find_starts(experiment, NAMED), settings.level_episodes)
         elif name == "test":
-            seeds = range(TEST_SEEDS.start, TEST_SEEDS.start + settings.generated)
-            suites[name] = Suite(_generated(experiment, seeds), settings.level_episodes)
+            starts = find_starts(experiment, TEST_SEEDS[: settings.generated])
+            suites[name] = Suite(starts, settings.level_episodes)
         elif levels != "campaign":
             starts = find_starts(experiment, levels, settings.generated)
             suites[name] = Suite(starts, settings.level_episodes)
@@ -64,46 +70,53 @@ def make_suites(experiment: Experiment) -> dict[str, Suite]:
 
 
 def find_starts(
-    experiment: Experiment, levels: str | Sequence[str], at_most: int | None = None
-) -> tuple[Start, ...]:
-    """Return a start for each level that is named as in the environment's keyword ``levels``.
+    experiment: Experiment, levels: str | range | Sequence[str], at_most: int | None = None
+) -> tuple[EpisodeStart, ...]:
+    """Return how an episode begins on each of some levels.
 
-    Of more seeds than ``at_most``, as many are taken, evenly spread. Raises `SettingsError`.
+    Args:
+        experiment: says which named rounds its game has, and how difficult generated levels are.
+        levels: as the environment's keyword ``levels``, or `NAMED`.
+        at_most: how many seeds of each range are taken, evenly spread; None: all.
+
+    Raises:
+        SettingsError: there is no such level, or the experiment's game cannot play it.
     """
-    names = [levels] if isinstance(levels, str) else list(levels)
-    starts: list[Start] = []
+    names = [levels] if isinstance(levels, str | range) else list(levels)
+    starts: list[EpisodeStart] = []
     for name in names:
         try:
-            seeds = seed_range(name)
-            if seeds is None:
-                load_round(name)
+            starts += _starts_of(experiment, name, at_most)
         except (OSError, ValueError) as error:
             raise SettingsError(f"level {name!r}: {error}") from None
-        if seeds is None:
-            starts.append(Start(name, {"level": name}))
-            continue
-        count = min(len(seeds), at_most or len(seeds))
-        places = np.linspace(0, len(seeds) - 1, count).round().astype(int)
-        starts += _generated(experiment, [seeds[int(place)] for place in places])
     return tuple(starts)
 
 
-def _named(experiment: Experiment) -> tuple[Start, ...]:
-    # The last one is the boss's, and he is an enemy.
-    lite = experiment.env_id == "ArkanoidLite-v0"
-    enemies = experiment.env.get("enemies", not lite)
-    names = CAMPAIGN if enemies else CAMPAIGN[:-1]
-    return tuple(Start(name, {"level": name}) for name in names)
+def _starts_of(
+    experiment: Experiment, name: str | range, at_most: int | None
+) -> list[EpisodeStart]:
+    if name == NAMED:
+        return [EpisodeStart(each, {"level": each}) for each in campaign_names(experiment.config)]
+    seeds = seed_range(name)
+    if seeds is None:
+        level = str(name)
+        check_boss(experiment.config, level)
+        return [EpisodeStart(level, {"level": level})]
+    count = min(len(seeds), at_most or len(seeds))
+    places = np.linspace(0, len(seeds) - 1, count).round().astype(int)
+    return _generated(experiment, [seeds[place] for place in places.tolist()])
 
 
-def _generated(experiment: Experiment, seeds: Sequence[int]) -> tuple[Start, ...]:
-    """Return starts of generated levels: as difficult as configured, or from easiest to hardest."""
-    difficulty = experiment.env.get("difficulty")
-    if difficulty is None:
-        rising = np.linspace(0, 1, len(seeds)).round(4).tolist() if len(seeds) > 1 else [0.5]
+def _generated(experiment: Experiment, seeds: Sequence[int]) -> list[EpisodeStart]:
+    """Return generated levels, as difficult as configured, or from the easiest to the hardest."""
+    difficulty = experiment.config.difficulty
+    if difficulty is not None:
+        difficulties = [float(difficulty)] * len(seeds)
+    elif len(seeds) > 1:
+        difficulties = np.linspace(0, 1, len(seeds)).round(4).tolist()
     else:
-        rising = [float(difficulty)] * len(seeds)
-    return tuple(
-        Start(f"{seed} at {hard:.2f}", {"seed": int(seed), "difficulty": hard})
-        for seed, hard in zip(seeds, rising, strict=True)
-    )
+        difficulties = [0.5]
+    return [
+        EpisodeStart(f"{seed} at {hard:.2f}", {"seed": int(seed), "difficulty": hard})
+        for seed, hard in zip(seeds, difficulties, strict=True)
+    ]

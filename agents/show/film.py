@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..experiment.schema import SettingsError
+from ..experiment.errors import SettingsError
 
-Picture = NDArray[np.uint8]
+Picture = NDArray[np.uint8]  # [height, width, 3]
 
-# Pictures a second that make a smooth film; more only make it larger.
+# Pictures per second that make a smooth film; more only make the file larger.
 RATES = {".gif": 20.0, ".mp4": 60.0}
 _GIF_COLOURS = 256
 _GIF_UNIT = 10  # milliseconds: a GIF counts hundredths of a second
@@ -21,22 +21,22 @@ _QUALITY = 8  # of 10
 
 
 def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
-    """Write a film of pictures, uint8 [height, width, 3], ``rate`` of them a second.
+    """Write a film of pictures, uint8 [height, width, 3], ``rate`` of them per second.
 
-    The path's suffix, one of `RATES`, says which kind. The sides of an ``.mp4`` must be even.
+    The path's suffix, one of `RATES`, says which kind. An ``.mp4`` needs an even height and width.
 
     Raises:
-        SettingsError: of this suffix there are no films, there is no picture, or imageio-ffmpeg
-            is not installed, and needed.
-        ModuleNotFoundError: the extra `train` is not installed, and needed.
-        OSError: the file can't be written.
+        SettingsError: the suffix is none of these, there is no picture, or an ``.mp4`` is asked for
+            and imageio-ffmpeg is not installed.
+        ModuleNotFoundError: Pillow is not installed.
+        OSError: the file cannot be written.
     """
     if path.suffix not in RATES:
-        raise SettingsError(f"{path}: films are written as {' or '.join(RATES)}")
+        raise SettingsError(f"{path}: a film is written as {' or '.join(RATES)}")
     rest = iter(pictures)
     first = next(rest, None)
     if first is None:
-        raise SettingsError(f"{path}: there is no picture to be written")
+        raise SettingsError(f"{path}: there is no picture to write")
     write = _write_gif if path.suffix == ".gif" else _write_mp4
     write(path, itertools.chain([first], rest), rate)
 
@@ -51,7 +51,7 @@ def _write_gif(path: Path, pictures: Iterator[Picture], rate: float) -> None:
     def images() -> Iterator[Any]:
         for index, picture in enumerate(itertools.chain([first], pictures)):
             image = Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
-            # Rounding the times, not the durations, keeps the pace.
+            # Times are rounded, not durations: so the errors do not add up.
             begin, end = (round(at * 1000 / _GIF_UNIT / rate) for at in (index, index + 1))
             image.info["duration"] = (end - begin) * _GIF_UNIT
             yield image
@@ -84,9 +84,9 @@ def _write_mp4(path: Path, pictures: Iterator[Picture], rate: float) -> None:
 
 
 def _gif_palette(picture: Picture) -> NDArray[np.uint8]:
-    """Return a film's colours, uint8 [n, 3]: the game's, and a picture's most frequent others.
+    """Return a film's colours, uint8 [n, 3]: the game's, and the picture's most frequent others.
 
-    All pictures get the same: with palettes of their own they would flicker.
+    All pictures share them: with a palette for each, the film would flicker.
     """
     from ...envs.draw.palette import PALETTE
 

@@ -1,111 +1,104 @@
-"""A page of text, tables and pictures, as HTML that needs no other file, or as Markdown."""
+"""A page about an agent: one Markdown template, and what markdown-it makes of it as HTML.
 
-import base64
-import html
-from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
-
-
-@dataclass(frozen=True)
-class Heading:
-    """A heading; level 1 is the page's title."""
-
-    text: str
-    level: int = 2
-
-
-@dataclass(frozen=True)
-class Text:
-    """A paragraph."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Code:
-    """Text that is shown as it is."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of text; the first one is the heading."""
-
-    rows: tuple[tuple[str, ...], ...]
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture file's bytes; its name's ending says of which kind it is."""
-
-    name: str
-    content: bytes
-    text: str
-
-
-Part = Heading | Text | Code | Table | Picture
-
-_KINDS = {".png": "image/png", ".gif": "image/gif"}
-_STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem }
-table { border-collapse: collapse; display: block; overflow-x: auto }
-th, td { padding: .2rem .6rem; text-align: right; border-bottom: 1px solid #ccc }
-th:first-child, td:first-child { text-align: left }
-pre { background: #f4f4f4; padding: 1rem; overflow-x: auto }
-img { max-width: 100% }
+Names of runs, levels and settings are other people's data: the templates escape every value, except
+what functions here have made as `Markdown` or HTML.
 """
 
+import base64
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
 
-def as_html(parts: Sequence[Part]) -> str:
-    """Return a page that holds all that it shows."""
-    title = next((part.text for part in parts if isinstance(part, Heading)), "Report")
-    body = "\n".join(map(_html, parts))
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<meta charset="utf-8">\n'
-        f"<title>{html.escape(title)}</title>\n<style>{_STYLE}</style>\n{body}\n</html>\n"
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markdown_it import MarkdownIt
+from markupsafe import Markup
+
+_KINDS = {".png": "image/png", ".gif": "image/gif"}
+# What has a meaning inside a line of Markdown; underscores inside a word have none.
+_SPECIAL = re.compile(r"[\\`*\[\]<>|&~$#]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])")
+
+# A picture's name -> the bytes of its file.
+Pictures = Mapping[str, bytes]
+
+
+class Markdown(str):
+    """Text that is Markdown already."""
+
+
+def write_page(path: Path, facts: Mapping[str, Any], pictures: Pictures) -> None:
+    """Write a page as HTML with its pictures inside, or as Markdown with a folder of pictures.
+
+    Args:
+        path: of the page, ``.html`` or ``.md``; the folder beside it has its name without suffix.
+        facts: what the template ``report.md.jinja`` shows.
+        pictures: the files that it refers to.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    if path.suffix == ".html":
+        path.write_text(as_html(facts, pictures), encoding="utf-8")
+        return
+    folder = path.with_suffix("")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in pictures.items():
+        (folder / name).write_bytes(content)
+    sources = {name: f"{quote(folder.name)}/{quote(name)}" for name in pictures}
+    path.write_text(as_markdown(facts, sources), encoding="utf-8")
+
+
+def as_html(facts: Mapping[str, Any], pictures: Pictures) -> str:
+    """Return the page as HTML that needs no other file."""
+    sources = {name: _data_uri(name, content) for name, content in pictures.items()}
+    # Without "html", tags inside Markdown are text.
+    renderer = MarkdownIt("commonmark", {"html": False, "xhtmlOut": False}).enable("table")
+    body = renderer.render(as_markdown(facts, sources))
+    template = _templates(autoescape=True).get_template("page.html.jinja")
+    return template.render(title=f"Arkanoid: {facts['name']}", body=Markup(body)) + "\n"
+
+
+def as_markdown(facts: Mapping[str, Any], sources: Mapping[str, str]) -> str:
+    """Return the page as Markdown; ``sources`` says where each picture lies."""
+
+    def picture(name: str, text: str) -> Markdown:
+        return Markdown(f"![{escape(text)}]({sources[name]})")
+
+    template = _templates(finalize=escape).get_template("report.md.jinja")
+    return template.render(facts, table=table, code=code, picture=picture) + "\n"
+
+
+def escape(value: object) -> str:
+    """Return a value as one line of Markdown that shows it as it is."""
+    if isinstance(value, Markdown):
+        return value
+    return _SPECIAL.sub(lambda found: f"\\{found[0]}", " ".join(str(value).split()))
+
+
+def table(rows: Sequence[Sequence[object]]) -> Markdown:
+    """Return a table; the first row is its heading, and all columns but the first are numbers."""
+    lines = [f"| {' | '.join(map(escape, row))} |" for row in rows]
+    rule = f"| --- |{' ---: |' * (len(rows[0]) - 1)}"
+    return Markdown("\n".join([lines[0], rule, *lines[1:]]))
+
+
+def code(text: str) -> Markdown:
+    """Return TOML in a fence that the text cannot close."""
+    longest = max(map(len, re.findall("`+", text)), default=0)
+    fence = "`" * max(3, longest + 1)
+    return Markdown(f"{fence}toml\n{text.strip()}\n{fence}")
+
+
+def _templates(**escaping: Any) -> Environment:
+    return Environment(
+        loader=PackageLoader(str(__package__), "."),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        **escaping,
     )
 
 
-def _html(part: Part) -> str:
-    if isinstance(part, Heading):
-        return f"<h{part.level}>{html.escape(part.text)}</h{part.level}>"
-    if isinstance(part, Text):
-        return f"<p>{html.escape(part.text)}</p>"
-    if isinstance(part, Code):
-        return f"<pre>{html.escape(part.text)}</pre>"
-    if isinstance(part, Picture):
-        data = base64.b64encode(part.content).decode()
-        kind = _KINDS[Path(part.name).suffix]
-        return f'<img src="data:{kind};base64,{data}" alt="{html.escape(part.text)}">'
-    rows = [
-        "<tr>" + "".join(f"<{cell}>{html.escape(text)}</{cell}>" for text in row) + "</tr>"
-        for cell, row in zip(["th"] + ["td"] * len(part.rows), part.rows, strict=False)
-    ]
-    return "<table>\n" + "\n".join(rows) + "\n</table>"
-
-
-def as_markdown(parts: Sequence[Part], path: Path) -> str:
-    """Return the text of a page at ``path``; its pictures are written into a folder beside it."""
-    folder = path.with_suffix("")
-    pictures = [part for part in parts if isinstance(part, Picture)]
-    if pictures:
-        folder.mkdir(parents=True, exist_ok=True)
-    for picture in pictures:
-        (folder / picture.name).write_bytes(picture.content)
-    return "\n\n".join(_markdown(part, folder.name) for part in parts) + "\n"
-
-
-def _markdown(part: Part, folder: str) -> str:
-    if isinstance(part, Heading):
-        return f"{'#' * part.level} {part.text}"
-    if isinstance(part, Text):
-        return part.text
-    if isinstance(part, Code):
-        return f"```toml\n{part.text.strip()}\n```"
-    if isinstance(part, Picture):
-        return f"![{part.text}]({folder}/{part.name})"
-    head, *rows = [f"| {' | '.join(row)} |" for row in part.rows]
-    line = f"| --- |{' ---: |' * (len(part.rows[0]) - 1)}"
-    return "\n".join([head, line, *rows])
+def _data_uri(name: str, content: bytes) -> str:
+    return f"data:{_KINDS[Path(name).suffix]};base64,{base64.b64encode(content).decode()}"

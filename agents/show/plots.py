@@ -1,4 +1,4 @@
-"""Pictures of results: who reaches what, level by level, and how it was learnt."""
+"""Plots of results: all policies, level by level, and the learning curves."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,11 +12,11 @@ from ..experiment.settings import Experiment
 from ..learn.curves import STEP
 from ..measure.comparison import COLUMNS, Comparison, Results, level_interval, summarise
 from ..measure.intervals import Interval, bootstrap_interval
-from ..measure.suites import Start, make_suites
+from ..measure.suites import EpisodeStart, make_suites
 
-# What the bars show.
+# The measures that the bars show.
 _BARS = ("cleared", "score", "hits", "steps")
-# What the curves show: the key in the curves' file, and its heading.
+# The learning curves: each key in the curves' file, and its heading.
 _CURVES = {
     "rollout/ep_rew_mean": "return, training",
     "rollout/ep_hits_mean": "brick hits, training",
@@ -49,7 +49,7 @@ def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:
     names = list(results)
     for axes, measure in zip(figure.subplots(1, len(_BARS)), _BARS, strict=True):
         intervals = [summarise(results[name][measure])["mean"] for name in names]
-        axes.barh(names, [interval.mean for interval in intervals], xerr=_errors(intervals))
+        axes.barh(names, [interval.estimate for interval in intervals], xerr=_errors(intervals))
         axes.invert_yaxis()
         axes.set_xlabel(COLUMNS[measure])
         axes.set_xlim(left=0)
@@ -59,7 +59,9 @@ def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:
     return figure
 
 
-def plot_levels(title: str, starts: Sequence[Start], results: Mapping[str, Results]) -> Figure:
+def plot_levels(
+    title: str, starts: Sequence[EpisodeStart], results: Mapping[str, Results]
+) -> Figure:
     """Draw the cleared rate of all policies on each level, with their intervals."""
     figure = Figure(figsize=(8, 1.2 + 0.28 * len(starts)), layout="constrained")
     axes = figure.subplots()
@@ -68,7 +70,7 @@ def plot_levels(title: str, starts: Sequence[Start], results: Mapping[str, Resul
         shift = 0.5 * (index / max(1, len(results) - 1) - 0.5)
         intervals = [level_interval(measured["cleared"], level) for level in places.tolist()]
         axes.errorbar(
-            [interval.mean for interval in intervals],
+            [interval.estimate for interval in intervals],
             places + shift,
             xerr=_errors(intervals),
             fmt="o",
@@ -86,7 +88,7 @@ def plot_levels(title: str, starts: Sequence[Start], results: Mapping[str, Resul
 
 
 def plot_curves(curves: Sequence[Sequence[Mapping[str, Any]]]) -> Figure:
-    """Draw the learning curves of one agent's runs: their mean, and its interval over the runs."""
+    """Draw the learning curves of an agent: the mean of its runs, with its interval."""
     shown = {
         key: title
         for key, title in _CURVES.items()
@@ -94,24 +96,24 @@ def plot_curves(curves: Sequence[Sequence[Mapping[str, Any]]]) -> Figure:
     }
     rows = max(1, -(-len(shown) // 3))
     figure = Figure(figsize=(12, 3 * rows), layout="constrained")
-    grid = figure.subplots(rows, 3, squeeze=False).ravel()
-    for axes, (key, title) in zip(grid, shown.items(), strict=False):
+    panels = figure.subplots(rows, 3, squeeze=False).ravel()
+    for axes, (key, title) in zip(panels, shown.items(), strict=False):
         steps, means, lows, highs = mean_curve(curves, key)
         axes.plot(steps, means)
         axes.fill_between(steps, lows, highs, alpha=0.25)
         axes.set_title(title, fontsize=10)
         axes.set_xlabel("decisions")
         axes.grid(alpha=0.3)
-    for axes in grid[len(shown) :]:
+    for axes in panels[len(shown) :]:
         axes.set_axis_off()
     return figure
 
 
 def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArray[np.float64]:
-    """Return decisions, means and ends of their 95 % intervals over the runs, [4, points].
+    """Return decisions, the runs' means, and both ends of their 95 % intervals, [4, points].
 
-    The curves are read at the same decisions, between measurements along straight lines, as far as
-    all of them go.
+    All curves are read at the same decisions, as far as the shortest one goes, with straight lines
+    between measurements.
     """
     series = [
         np.array([(row[STEP], row[key]) for row in curve if key in row], np.float64)
@@ -126,7 +128,10 @@ def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArr
 
 
 def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:
-    """Return the distances from the means to the intervals' ends, [2, n], none below zero."""
-    distances = [[i.mean - i.low for i in intervals], [i.high - i.mean for i in intervals]]
+    """Return the distances from the estimates to the intervals' ends, [2, n], at least zero."""
+    distances = [
+        [interval.estimate - interval.low for interval in intervals],
+        [interval.high - interval.estimate for interval in intervals],
+    ]
     errors: NDArray[np.float64] = np.maximum(0.0, np.array(distances))
     return errors

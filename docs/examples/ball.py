@@ -1,8 +1,8 @@
-"""A ball among bricks: the discrete procedure of move, detect, relax and bounce, in own classes.
+"""A ball among bricks, with classes of our own: in each tick move, detect, relax and bounce.
 
-The ball has a velocity and a mass: it is moved and bounces. Walls and bricks have only a collider
-and a position: static. The paddle has a velocity but no mass: it moves as it is told, nothing moves
-it, and what bounces off it notices its speed.
+Walls and bricks have only a collider and a position, so they are static. The ball also has a
+velocity and a mass, so it bounces. The paddle has a velocity but no mass: nothing changes its
+motion, but what bounces off it feels its speed.
 """
 
 import math
@@ -23,7 +23,7 @@ TICK = 1 / 240  # short: the ball must not fly through a brick between two ticks
 
 
 class Wall:
-    """A half-plane beside the field."""
+    """A half-plane at one side of the field. It is static."""
 
     def __init__(self, collider: Collider, position: tuple[float, float]) -> None:
         self.collider = collider
@@ -31,7 +31,7 @@ class Wall:
 
 
 class Brick:
-    """Gone when it was hit."""
+    """A rectangle that disappears when the ball hits it. It is static."""
 
     collider = AxisAlignedRectangle(1, 0.5)
 
@@ -40,7 +40,7 @@ class Brick:
 
 
 class Paddle:
-    """Kinematic: a velocity, and no mass. Its ends slope away, which sends the ball sideways."""
+    """Kinematic: it has a velocity and no mass. Its sloping ends send the ball sideways."""
 
     collider = Convex([(-1.2, -0.125), (1.2, -0.125), (0.6, 0.125), (-0.6, 0.125)])
     speed = 12.0
@@ -50,7 +50,7 @@ class Paddle:
         self.velocity = (0.0, 0.0)
 
     def follow(self, x: float) -> None:
-        """Go under a place, as far as a tick's way leads."""
+        """Move towards x, at most as far as one tick allows."""
         way = x - self.position[0]
         reach = self.speed * TICK
         self.velocity = (max(-reach, min(reach, way)) / TICK, 0.0)
@@ -58,7 +58,7 @@ class Paddle:
 
 
 class Ball:
-    """Dynamic: moved by its velocity, pushed and reflected by what it meets."""
+    """Dynamic: it has a velocity and a mass, and is pushed and reflected by what it hits."""
 
     collider = Particle(0.125)
     mass = 1.0
@@ -68,7 +68,7 @@ class Ball:
         self.velocity = (4.0, 9.0)
 
     def fly(self) -> None:
-        """Move on by one tick, with the speed that the game's rules give it."""
+        """Move for one tick. The rules of the game fix the speed."""
         faster = SPEED / math.hypot(*self.velocity)
         self.velocity = (self.velocity[0] * faster, self.velocity[1] * faster)
         self.position = (
@@ -92,7 +92,7 @@ def main() -> None:
     while bricks and balls <= 3:
         ticks += 1
         ball.fly()
-        # Half a paddle to and fro: with its flat and with its slopes.
+        # Swing about the ball, so that it lands on the flat part and on the slopes.
         paddle.follow(ball.position[0] + 0.9 * math.sin(0.05 * ticks))
         bounces += sum(collide(ball, thing) for thing in (*walls, paddle))
         bricks = [brick for brick in bricks if not collide(ball, brick)]

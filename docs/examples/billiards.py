@@ -1,7 +1,7 @@
-"""The break at pool, with `World`: sixteen balls, four cushions, and six pockets that only notice.
+"""The break at pool, with `World`: sixteen balls, four cushions, and six pockets that are sensors.
 
-Lengths are in metres, times in seconds. There is no friction: what slows the balls is that bounces
-are not perfect.
+Lengths are in metres, times in seconds. There is no friction; the balls lose energy only when they
+bounce.
 """
 
 import math
@@ -16,7 +16,7 @@ FRAME = 1 / 60
 
 
 def rack() -> list[tuple[float, float]]:
-    """Return where the fifteen balls are: a triangle with its tip to the left, a hair apart."""
+    """Return the places of fifteen balls: a triangle with its tip to the left, with small gaps."""
     step = 2 * RADIUS * 1.001
     return [
         (0.72 * WIDTH + row * step * math.sqrt(3) / 2, HEIGHT / 2 + step * (place - row / 2))
@@ -26,7 +26,7 @@ def rack() -> list[tuple[float, float]]:
 
 
 def table() -> tuple[World, list[str]]:
-    """Return the world, and the name of every body in it."""
+    """Return the world, and the names of its bodies in order."""
     world = World()
     names = []
     for direction, place in (
@@ -49,17 +49,17 @@ def table() -> tuple[World, list[str]]:
 
 
 def ball(place: tuple[float, float], velocity: tuple[float, float] = (0.0, 0.0)) -> Body:
-    """Return a ball somewhere."""
+    """Return a ball."""
     return Body(Particle(RADIUS), place, velocity, MASS, restitution=0.97)
 
 
 def energy(world: World) -> float:
-    """Return the energy of all that moves, in joules."""
+    """Return the kinetic energy of all balls, in joules."""
     return 0.5 * MASS * float((world.velocities**2).sum())
 
 
 def main() -> None:
-    """Break, and watch for ten seconds."""
+    """Simulate ten seconds from the break on."""
     world, names = table()
     print(f"{energy(world):.2f} J before the break")
     bounces = 0
@@ -69,7 +69,7 @@ def main() -> None:
         bounces += len(hits) - len(potted)
         for hit in potted:
             print(f"{hit['time']:.3f} s: {names[hit['b']]} in {names[hit['a']]}")
-        # From the last index on, for those behind one that is removed move down.
+        # The highest index first: removing a body lowers the indices above it.
         for index in sorted(set(potted["b"].tolist()), reverse=True):
             world.remove(index)
             del names[index]

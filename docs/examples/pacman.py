@@ -1,8 +1,8 @@
 """Pac-Man in a maze: relaxation alone makes the walls solid and lets him slide along them.
 
-These are ordinary classes: none inherits from the engine or is registered with it. Walls and dots
-have a collider and a position, so they can be detected. Pac-Man has a mass, too, so he gives way.
-Nobody has a velocity, and nothing bounces.
+These are ordinary classes, which the engine does not know. Walls and dots have a collider and a
+position, so they can be detected. Pac-Man also has a mass, so relaxation moves him. Nothing has a
+velocity, and nothing bounces.
 """
 
 from arkanoid.physics import AxisAlignedRectangle, Particle, contact, detect, relax
@@ -16,8 +16,8 @@ MAZE = """
 #.......#
 #########
 """
-# The keys that the player holds down, and for how many ticks. With two at once he walks along the
-# wall and slips round the next corner.
+# The keys that the player holds down, and for how many ticks. While two keys are held, Pac-Man
+# slides along the wall and round the next corner.
 HELD = (
     ("right", 30),
     ("right down", 60),
@@ -27,11 +27,11 @@ HELD = (
     ("left up", 110),
 )
 DIRECTIONS = {"up": (0, 1), "down": (0, -1), "left": (-1, 0), "right": (1, 0)}
-STEP = 0.1  # how far he walks in a tick; a cell of the maze is 1
+STEP = 0.1  # how far he walks per tick; a cell of the maze is 1 wide
 
 
 class Wall:
-    """A cell of the maze that is filled."""
+    """A solid cell of the maze."""
 
     collider = AxisAlignedRectangle(1, 1)
 
@@ -40,7 +40,7 @@ class Wall:
 
 
 class Dot:
-    """Something to eat. It is detected, but nobody ever relaxes it: it is in nobody's way."""
+    """Something to eat. It is only detected, so it stops nobody."""
 
     collider = Particle(0.1)
 
@@ -52,13 +52,13 @@ class PacMan:
     """A disc a little smaller than the corridors."""
 
     collider = Particle(0.45)
-    mass = 1.0  # what has a mass gives way to what has none
+    mass = 1.0  # relaxation moves what has a mass
 
     def __init__(self, position: tuple[float, float]) -> None:
         self.position = position
 
     def walk(self, keys: str, walls: list[Wall]) -> None:
-        """Step to where the keys point, walls or not, and then out of the walls."""
+        """Step where the keys point, even into a wall, and then out of all walls."""
         x, y = self.position
         for key in keys.split():
             x, y = x + STEP * DIRECTIONS[key][0], y + STEP * DIRECTIONS[key][1]
@@ -67,20 +67,20 @@ class PacMan:
             overlaps = [(contact(self, wall), wall) for wall in walls if detect(self, wall)]
             if not overlaps:
                 return
-            # The deepest first: it is the flat of a wall, and the corners of its neighbours in the
-            # same row are then out of the way.
+            # The deepest contact first: it is with the flat side of a wall. After that he no longer
+            # overlaps the corners of the next walls in the row.
             deepest, wall = max(overlaps, key=lambda overlap: overlap[0].depth)
             relax(self, wall, deepest)
 
 
 def cells(mark: str) -> list[tuple[float, float]]:
-    """Return the centres of the cells with a mark, y upwards."""
+    """Return the centres of all cells with this mark. y points up."""
     rows = reversed(MAZE.split())
     return [(x, y) for y, row in enumerate(rows) for x, cell in enumerate(row) if cell == mark]
 
 
 def main() -> None:
-    """Walk through the maze, and say where each change of keys led."""
+    """Walk through the maze, and print where each combination of keys led."""
     walls = [Wall(cell) for cell in cells("#")]
     dots = [Dot(cell) for cell in cells(".")]
     pacman = PacMan(cells("P")[0])

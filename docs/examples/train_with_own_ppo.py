@@ -1,9 +1,9 @@
-"""PPO in one file, in the manner of CleanRL, against Gymnasium's interface for vector environments.
+"""PPO in one file, in the manner of CleanRL, on Gymnasium's interface for vector environments.
 
-Worlds restart in the step that ends their episode (`autoreset_mode="SameStep"`): then every step is
-one of an episode, and none has to be masked. The observation that comes back is already the next
-episode's; the one that the episode ended with is `infos["final_obs"]`. Where an episode is cut, not
-lost, what would have followed has a value, and that is read from it.
+Worlds restart in the step that ends their episode (`autoreset_mode="SameStep"`), so every step
+belongs to an episode and none has to be masked. That step returns the first observation of the next
+episode; the last observation of the old one is `infos["final_obs"]`. If an episode was cut and not
+lost, its value stands for the rest of the game.
 """
 
 import gymnasium as gym
@@ -19,7 +19,7 @@ DISCOUNT, SMOOTHING, CLIP = 0.99, 0.95, 0.2
 
 
 class Agent(nn.Module):
-    """A policy and a value, two networks of the same form."""
+    """A policy and a value: two networks with the same hidden layers."""
 
     def __init__(self, seen: int, actions: int) -> None:
         super().__init__()
@@ -35,7 +35,7 @@ class Agent(nn.Module):
 
 @torch.no_grad()
 def cut_values(agent: Agent, infos: dict, cut: np.ndarray) -> Tensor:
-    """Return what would have followed the episodes that were cut, 0 elsewhere."""
+    """Return the values of the last observations of episodes that were cut, and 0 elsewhere."""
     values = torch.zeros(len(cut))
     if cut.any():
         values[cut] = agent(torch.from_numpy(np.stack(infos["final_obs"][cut])))[1]
@@ -67,7 +67,7 @@ def rollout(agent: Agent, env: gym.vector.VectorEnv, seen: Tensor) -> tuple[list
 
 
 def improve(agent: Agent, adam: torch.optim.Optimizer, batch: list[Tensor]) -> None:
-    """Do the gradient steps of one update."""
+    """Make the gradient steps of one update."""
     for _ in range(EPOCHS):
         for part in torch.randperm(WORLDS * STEPS).chunk(MINIBATCHES):
             seen, action, log, advantage, goal = (each[part] for each in batch)
@@ -83,8 +83,8 @@ def improve(agent: Agent, adam: torch.optim.Optimizer, batch: list[Tensor]) -> N
 
 
 def main() -> None:
-    """Train for a few seconds; more UPDATES make a player of it."""
-    torch.set_num_threads(1)  # small networks: more would mostly wait for each other
+    """Train for a few seconds. With more UPDATES it learns to play."""
+    torch.set_num_threads(1)  # the networks are too small for more
     torch.manual_seed(0)
     worlds = gym.make_vec(
         "arkanoid:ArkanoidLite-v0",

@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/levels.md: ``python docs/pictures/levels.py``."""
+"""Draws the pictures of `levels.md`: ``python docs/pictures/levels.py``."""
 
 import sys
 from pathlib import Path
@@ -7,24 +7,24 @@ from typing import Any
 import gymnasium as gym
 import imageio.v3 as iio
 import numpy as np
-from arkanoid.envs.levels.files import CAMPAIGN
-from arkanoid.envs.levels.generator import plan_level
+from arkanoid.envs.levels import CAMPAIGN
+from arkanoid.envs.levels.generator import make_recipe
 from arkanoid.envs.levels.motifs import MOTIFS
 from numpy.typing import NDArray
 
-ROUNDS = "named_rounds.png"
+NAMED = "named_levels.png"
 GENERATED = "generated_levels.png"
 DIFFICULTIES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 
 
 def sheet(starts: list[dict[str, Any]], columns: int) -> NDArray[np.uint8]:
-    """Return a picture of the first moments of episodes that begin as options say, in rows."""
+    """Return pictures of how episodes begin with some reset options, side by side in rows."""
     env = gym.make("arkanoid:Arkanoid-v0", render_mode="rgb_array")
     frames = []
     for options in starts:
         env.reset(seed=0, options=options)
         frame: Any = env.render()
-        # Every other pixel, and neither the score line nor what lies below the paddle.
+        # Every other pixel, without the score line and what lies below the paddle.
         frames.append(frame[48:460:2, ::2])
     env.close()
     frames += [np.zeros_like(frames[0])] * (-len(frames) % columns)
@@ -32,18 +32,18 @@ def sheet(starts: list[dict[str, Any]], columns: int) -> NDArray[np.uint8]:
     return np.concatenate(rows)
 
 
-def named_rounds() -> NDArray[np.uint8]:
-    """Return the picture of the campaign, row by row."""
+def named_levels() -> NDArray[np.uint8]:
+    """Return a picture of the campaign's levels, row by row."""
     return sheet([{"level": name} for name in CAMPAIGN], 5)
 
 
 def generated_levels() -> NDArray[np.uint8]:
-    """Return a picture with a row for each motif, and difficulty rising from left to right."""
+    """Return a picture with one row per motif; difficulty rises from left to right."""
     starts = []
     for motif in MOTIFS.values():
-        for place, difficulty in enumerate(DIFFICULTIES):
-            seed = 100 * place
-            while plan_level(seed, difficulty)[0] != motif:
+        for column, difficulty in enumerate(DIFFICULTIES):
+            seed = 100 * column
+            while make_recipe(seed, difficulty).motif != motif:
                 seed += 1
             starts.append({"seed": seed, "difficulty": difficulty})
     return sheet(starts, len(DIFFICULTIES))
@@ -51,7 +51,7 @@ def generated_levels() -> NDArray[np.uint8]:
 
 def main(folder: Path) -> None:
     """Write both pictures into a folder."""
-    iio.imwrite(folder / ROUNDS, named_rounds(), compress_level=9)
+    iio.imwrite(folder / NAMED, named_levels(), compress_level=9)
     iio.imwrite(folder / GENERATED, generated_levels(), compress_level=9)
 
 

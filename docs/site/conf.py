@@ -1,34 +1,49 @@
-"""How Sphinx makes the site of the pages in `docs`: `make docs`."""
+"""How Sphinx builds the site from the pages in `docs`: `make docs`."""
 
 import sys
+import tomllib
+import types
 from pathlib import Path
+from typing import Generic, NewType, TypeVar
 
-import arkanoid
+import numpy.typing
+
+# Sphinx writes out what an alias stands for, on several lines for `ArrayLike`. These stand-ins keep
+# their names in the reference.
+Scalar = TypeVar("Scalar")
+numpy.typing.ArrayLike = NewType("ArrayLike", object)
+numpy.typing.NDArray = types.new_class("NDArray", (Generic[Scalar],))
+for name in ("ArrayLike", "NDArray"):
+    getattr(numpy.typing, name).__module__ = "numpy.typing"
+
+import arkanoid  # noqa: E402
+from sphinx.application import Sphinx  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
+PYPROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
 
 project = "Arkanoid"
 author = "the authors of Arkanoid"
 project_copyright = ""
 version = release = arkanoid.__version__
+repository = tomllib.loads(PYPROJECT.read_text("utf-8"))["project"]["urls"]["Repository"]
 
 extensions = [
-    "docstrings",
+    "folders",
     "mathml",
     "myst_parser",
-    "source_pages",
     "sphinx.ext.autodoc",
-    "sphinx.ext.linkcode",
     "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
     "sphinx_copybutton",
 ]
 exclude_patterns = ["site"]
 nitpicky = True
-# Without a network there are no pages of other projects to link to; and a docstring may name what
-# is of interest in the sources only.
+# Without a network there are no pages of other projects to link to. And a docstring may name what
+# only a reader of the sources needs.
 nitpick_ignore_regex = [
     ("py:.*", r"(collections|gymnasium|numpy|os|stable_baselines3)\..*"),
-    ("py:class", r"ArrayLike|Batch|NDArray|arkanoid\..*"),
+    ("py:class", r"Batch|arkanoid\..*"),
     ("py:obj", ".*"),
 ]
 
@@ -52,5 +67,17 @@ html_css_files = ["site.css"]
 html_copy_source = False
 html_show_copyright = False
 html_theme_options = {"top_of_page_buttons": []}
-# Commands without their prompt; what a program prints is in blocks of text.
+# Commands are copied without their prompt, and without what the program prints.
 copybutton_prompt_text = "$ "
+
+
+def keep_first_line(_: Sphinx, kind: str, *rest: object) -> None:
+    """Keep what stands before the first colon of a property: Napoleon takes it for a type."""
+    lines = rest[-1]
+    if kind == "property" and isinstance(lines, list) and lines:
+        lines[0] = f": {lines[0]}"
+
+
+def setup(app: Sphinx) -> None:
+    """Change docstrings before Napoleon reads them."""
+    app.connect("autodoc-process-docstring", keep_first_line, priority=400)

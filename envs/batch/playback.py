@@ -1,4 +1,4 @@
-"""Recorded games played again: as states, as pictures, or only to see that they end the same."""
+"""Recorded games played again: as states, as pictures, or only to check that they end alike."""
 
 from collections.abc import Iterator
 from os import PathLike
@@ -13,11 +13,11 @@ from .replays import Replay, Result
 
 
 class ReplayDivergedError(RuntimeError):
-    """A game that is played again takes another course than when it was recorded."""
+    """A replayed game takes another course than the recorded one."""
 
 
 def play_replay(replay: Replay | str | PathLike[str]) -> Result:
-    """Play a recorded game again, and return what it came to.
+    """Play a recorded game again, and return its result.
 
     Args:
         replay: the game, or the path of its file.
@@ -33,7 +33,7 @@ def play_replay(replay: Replay | str | PathLike[str]) -> Result:
 
 
 def replay_frames(replay: Replay | str | PathLike[str]) -> Iterator[NDArray[np.uint8]]:
-    """Yield pictures of a recorded game, uint8 [height, width, 3]: at first, after each decision.
+    """Yield pictures of a recorded game, uint8 [height, width, 3]: the first, one per decision.
 
     `Replay.frames_per_second` of them are a second of the game.
 
@@ -48,7 +48,7 @@ def replay_frames(replay: Replay | str | PathLike[str]) -> Iterator[NDArray[np.u
 
 
 def replay_states(replay: Replay | str | PathLike[str]) -> Iterator[Batch]:
-    """Yield the batch of one world that plays a recorded game: at first and after each decision.
+    """Yield the one-world batch that replays a game, at the beginning and after each decision.
 
     Raises:
         OSError, ValueError, ReplayDivergedError: as `play_replay`.
@@ -83,7 +83,7 @@ def _loaded(replay: Any) -> Replay:
 
 
 def _compare_checksums(game: Replay, recorder: Recorder) -> None:
-    """Refuse a game whose checksums so far are not those that were recorded."""
+    """Raise an error if the checksums so far are not the recorded ones."""
     noted = len(recorder.checksums) - 1
     if recorder.checksums[:noted] == game.checksums[:noted]:
         return

@@ -1,4 +1,4 @@
-"""Recording: what is commanded in one world of a batch, and checksums of what comes of it."""
+"""Recording games: the commands given to one world of a batch, and checksums of its states."""
 
 import zlib
 from contextlib import suppress
@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..state import World
 from .batch import Batch
-from .replays import Replay, Result, Start
+from .replays import GameStart, Replay, Result
 
-# A checksum runs over the state after every so many decisions ...
+# The checksum runs over the state each time so many decisions were played ...
 CHECK_EVERY = 16
-# ... and its value is noted after every so many.
+# ... and its value is noted each time so many were played.
 NOTE_EVERY = 256
-# What it runs over: by name, so that it does not depend on how the state is laid out. These numbers
-# are all that a game's course depends on, but for a few counters.
+# What it runs over. These fields are all that a game's course depends on, but for a few counters.
 _CHECKED = (
     "random",
     "decisions",
@@ -50,11 +50,22 @@ _CHECKED = (
 )
 
 
+def _as_recorded(name: str) -> tuple[str, "np.dtype[Any]", tuple[int, ...]]:
+    """Return a field of `World` as checksums take it, however wide its integers are there."""
+    field = World[name]
+    wide = np.dtype(np.int64) if field.base.kind == "i" else field.base
+    return name, wide, field.shape
+
+
+# Without gaps, and in this order: so a checksum does not depend on how the state is laid out.
+_Checked = np.dtype([_as_recorded(name) for name in _CHECKED])
+
+
 class Recorder:
     """Records the games of one world of a batch, each from its beginning.
 
-    A game that is in play when the recording begins is recorded if it has just been reset. A
-    restored state ends the recording, until the next game begins.
+    A game that has already begun is recorded only if it was just reset. A restored state ends the
+    recording until the next game begins.
 
     Args:
         batch: of the world.
@@ -73,31 +84,30 @@ class Recorder:
         self._batch = batch
         self._world = world
         self._command = batch.commands[world]
-        self._checked: list[Any] = [batch.worlds[name][world : world + 1] for name in _CHECKED]
+        self._checked = np.zeros((), _Checked)
         self._recording = False
         self._over = False
-        self._start: Start
+        self._start: GameStart
         self._commands = bytearray()
         self._reward = 0.0
         self._checksum = 0
         self._checksums: list[int] = []
         batch.listeners.append(self)
-        record = batch.worlds[world]
-        if batch.seeded[world] and record["decisions"] == 0:
+        if batch.seeded[world] and batch.worlds["decisions"][world] == 0:
             self._begin()
 
     @property
     def over(self) -> bool:
-        """Whether the game that was recorded last is over, and the next has not begun."""
+        """Whether the latest recorded game is over, and the next one has not begun."""
         return self._over
 
     @property
     def checksums(self) -> tuple[int, ...]:
-        """The checksums that were noted, and at last that of the latest state they ran over."""
+        """The noted checksums, and as the last one the present checksum."""
         return (*self._checksums, self._checksum)
 
     def replay(self) -> Replay:
-        """Return the game so far, also after its end, until the next one begins.
+        """Return the game so far; after its end, the whole game until the next one begins.
 
         Raises:
             RuntimeError: it has not been recorded from its beginning.
@@ -114,15 +124,15 @@ class Recorder:
             self._batch.listeners.remove(self)
 
     def reset(self, mask: NDArray[np.bool_]) -> None:
-        """Note that the worlds of a mask were reset."""
+        """Follow a reset of the worlds of a mask."""
         if mask[self._world]:
             self._begin()
 
     def _begin(self) -> None:
-        """Note that a game has begun."""
+        """Begin to record a game."""
         self._recording = True
         self._over = False
-        self._start = Start.of(self._batch.worlds[self._world])
+        self._start = GameStart.of(self._batch.worlds[self._world])
         self._commands = bytearray()
         self._reward = 0.0
         self._checksum = 0
@@ -130,36 +140,43 @@ class Recorder:
         self._check(0)
 
     def interrupt(self) -> None:
-        """Note that the world was brought into another state."""
+        """Stop, because the world was brought into another state."""
         self._recording = False
 
     def step(self) -> None:
-        """Note a step."""
+        """Follow a step."""
         outcome = self._batch.outcomes[self._world]
         over = bool(outcome["terminated"] or outcome["truncated"])
         begun = bool(self._batch.worlds["decisions"][self._world] == 0)
-        # A step of next-step mode that begins a game plays none.
+        # In next-step mode, a step that begins a game plays no decision.
         if self._recording and not self._over and (over or not begun):
             self._note(over, begun)
         if begun:
             self._begin()
 
     def _note(self, over: bool, begun: bool) -> None:
-        """Note a decision, after which the game is over or not, and another has begun or not."""
+        """Record a decision.
+
+        Args:
+            over: whether the game is over after it.
+            begun: whether the next game has already begun.
+        """
         batch, world = self._batch, self._world
         self._commands += self._command.tobytes()
         self._reward += float(batch.outcomes["reward"][world])
         self._over = over
         decisions = len(self._commands) // self._command.nbytes
         if over:
-            # The last state may be gone already, so no checksum runs over it: the result tells.
+            # The last state may be gone already, so no checksum runs over it; the result stands for it.
             self.finished = self._replay(batch.finals[world] if begun else batch.outcomes[world])
         elif decisions % CHECK_EVERY == 0:
             self._check(decisions)
 
     def _check(self, decisions: int) -> None:
-        for part in self._checked:
-            self._checksum = zlib.crc32(part, self._checksum)
+        state = self._batch.worlds[self._world]
+        for name in _CHECKED:
+            self._checked[name] = state[name]
+        self._checksum = zlib.crc32(self._checked.tobytes(), self._checksum)
         if decisions % NOTE_EVERY == 0:
             self._checksums.append(self._checksum)
 

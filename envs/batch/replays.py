@@ -1,13 +1,13 @@
 """Replays: recorded games as small files, from which each game can be played again bit for bit.
 
 A replay holds what a game came from: the rules' keywords, the levels' bricks, the state of the
-random generator when the game began, and what the player commanded in each decision. It is sealed
+random generator when the game began, and the player's command in each decision. It is sealed
 (`sealed`), with this content:
 
     4 bytes  length of what is next, unsigned, little-endian
     JSON     compressed with zlib: everything but the commands, see `Replay`
-    commands compressed with zlib: a byte each, its place in the JSON's ``palette`` of [velocity,
-             fire]; or, where ``palette`` is null, float64 [decisions, 2] as sixteen planes of bytes
+    commands compressed with zlib: one byte per command, its place in the JSON's ``palette`` of
+             [velocity, fire]; or, where ``palette`` is null, float64 [decisions, 2] as sixteen planes of bytes
 """
 
 import json
@@ -28,27 +28,27 @@ from ..levels.generator import MAX_SEED
 from ..levels.plan import LevelPlan
 from ..levels.starts import MAX_ROUND
 from ..rules import BRICK_LETTERS, CELLS, RULES_VERSION, TICKS_PER_SECOND
-from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, Level
+from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, LevelEntry
 
 _MARK = b"ARKAPLAY"
 _FORMAT = 1
 _LENGTH = struct.Struct("<I")
 _MOST_COLOURS = 256  # of the palette of commands
 
-# How a game began, as the world's record tells it.
+# How a game began: these fields of `World` say it.
 _START_FIELDS = ("start", "start_round", "start_seed", "start_difficulty", "start_boss")
 
 
 @dataclass(frozen=True)
 class Result:
-    """What a recorded game came to.
+    """The result of a recorded game.
 
     Attributes:
         decisions: how many were played.
-        reward: their sum.
+        reward: the sum of their rewards.
         score, lives, round: at the end.
         terminated: whether the last life was lost.
-        truncation: why the game was cut, see `state`; 0 if it was not, or goes on.
+        truncation: why the game was truncated, see `state`; 0 if it was not.
     """
 
     decisions: int
@@ -61,13 +61,13 @@ class Result:
 
 
 @dataclass(frozen=True)
-class Start:
+class GameStart:
     """How a game began.
 
     Attributes:
         random: the state of the random generator.
-        fields: those of the world's record that say how the first round is found.
-        layout: the bricks of a first round that was given by its level, as a level file's letters.
+        fields: those of `World` that say where the first round comes from.
+        layout: the bricks of a given first round, in a level file's letters.
     """
 
     random: int
@@ -75,13 +75,13 @@ class Start:
     layout: str
 
     @classmethod
-    def of(cls, world: Any) -> "Start":
+    def of(cls, world: Any) -> "GameStart":
         """Return how the present game of a world (a `World` record) began."""
         fields = {name: world[name].item() for name in _START_FIELDS}
         return cls(int(world["first_random"]), fields, _letters(world["start_kind"]))
 
     def apply(self, worlds: Any) -> None:
-        """Let the next games of worlds begin like this."""
+        """Let the next games of worlds (`World` [n]) begin like this."""
         worlds["random"] = self.random
         for name, value in self.fields.items():
             worlds[name] = value
@@ -93,18 +93,18 @@ class Replay:
     """A recorded game.
 
     Attributes:
-        config: the keywords of the game; how it was observed does not matter.
+        config: the keywords of the game, without those of its observation.
         plan: its levels.
         start: how it began.
         commands: velocity in [-1, 1] and fire of each decision, float64 [decisions, 2].
-        checksums: of the states on the way, see `recorder`.
-        result: what it came to.
+        checksums: of states during the game, see `recorder`.
+        result: how it ended.
         version: of the release that recorded it.
     """
 
     config: Config
     plan: LevelPlan
-    start: Start
+    start: GameStart
     commands: NDArray[np.float64]
     checksums: tuple[int, ...]
     result: Result
@@ -112,11 +112,11 @@ class Replay:
 
     @property
     def frames_per_second(self) -> float:
-        """How many frames make a second of the game."""
+        """The number of frames in one second of the game."""
         return TICKS_PER_SECOND / self.config.frame_skip
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write a file; one that is there already is replaced."""
+        """Write a file, replacing one of the same name."""
         Path(path).write_bytes(self.to_bytes())
 
     @classmethod
@@ -125,7 +125,7 @@ class Replay:
 
         Raises:
             OSError: it can't be read.
-            ValueError: it is no replay, corrupt, or of another version of the format or the rules;
+            ValueError: it is not a replay, corrupt, or of another version of the format or the rules;
                 the message names the file.
         """
         try:
@@ -170,7 +170,7 @@ class Replay:
         replay = cls(
             config=Config.from_keywords(head["config"]),
             plan=_read_plan(head["levels"]),
-            start=Start(**head["start"]),
+            start=GameStart(**head["start"]),
             commands=_unpack_commands(head["palette"], commands),
             checksums=tuple(head["checksums"]),
             result=Result(**head["result"]),
@@ -180,7 +180,7 @@ class Replay:
         return replay
 
     def _check(self) -> None:
-        """Refuse with a ValueError what no player could have done: files may come from anyone."""
+        """Raise a ValueError for what no player could have done: files may come from anyone."""
         move, fire = self.commands.T
         illegal = ~((abs(move) <= 1.0) & ((fire == 0.0) | (fire == 1.0)))  # so that NaN is, too
         if illegal.any():
@@ -201,13 +201,13 @@ class Replay:
 
 
 def _compress(commands: bytes) -> bytes:
-    # What repeats in a player's commands are long runs; looking for short ones makes files larger.
+    # A player's commands repeat in long runs; to look for short ones makes files larger.
     compressor = zlib.compressobj(level=9, strategy=zlib.Z_FILTERED)
     return compressor.compress(commands) + compressor.flush()
 
 
 def _letters(kinds: NDArray[np.uint8]) -> str:
-    """Return a layout, uint8 [cells], as letters without the empty cells at the end."""
+    """Return a layout, uint8 [cells], as letters, without the empty cells at the end."""
     return "".join(BRICK_LETTERS[kind] for kind in kinds).rstrip(BRICK_LETTERS[0])
 
 
@@ -228,7 +228,7 @@ def _plain_plan(plan: LevelPlan) -> dict[str, Any]:
 
 
 def _read_plan(plain: dict[str, Any]) -> LevelPlan:
-    table = np.zeros(len(plain["bricks"]), Level)
+    table = np.zeros(len(plain["bricks"]), LevelEntry)
     table["kind"] = [_kinds(letters) for letters in plain["bricks"]]
     table["boss"] = plain["boss"]
     return LevelPlan(
@@ -242,7 +242,7 @@ def _read_plan(plain: dict[str, Any]) -> LevelPlan:
 
 def _pack_commands(commands: NDArray[np.float64]) -> tuple[list[list[float]] | None, bytes]:
     """Return the palette of commands, float64 [n, 2], and their bytes; see the head of the file."""
-    # By their bits, for -0.0 is not 0.0.
+    # By their bits, because -0.0 and 0.0 are different commands.
     bits, places = np.unique(commands.view(np.uint64), axis=0, return_inverse=True)
     if len(bits) <= _MOST_COLOURS:
         return bits.view(np.float64).tolist(), places.astype(np.uint8).tobytes()

@@ -1,4 +1,4 @@
-"""What the state of a world depends on besides itself."""
+"""What has to be the same where a state is taken and where it is restored."""
 
 import hashlib
 import json
@@ -16,9 +16,9 @@ from ..state import Outcome, World
 def describe_setup(
     config: Config, plan: LevelPlan, rules: NDArray[Any], observations: "np.dtype[Any]"
 ) -> bytes:
-    """Return what a state depends on besides itself, as JSON: rules, configuration and levels.
+    """Return, as JSON, what a state is bound to: rules, configuration, levels and layout.
 
-    Levels count by their contents, for a file may change and keep its name.
+    Levels count by their contents, because a file may change and keep its name.
     """
     keywords = config.plain()
     del keywords["levels"]

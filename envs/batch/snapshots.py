@@ -1,4 +1,4 @@
-"""The state of a batch's worlds as bytes, refused where they do not belong.
+"""The state of a batch's worlds as bytes, which are refused where they do not belong.
 
 A snapshot is sealed (`sealed`) with this content:
 
@@ -25,7 +25,7 @@ _SIZES = struct.Struct("<II")
 
 
 def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
-    """Return the state of all worlds of a batch, or of one.
+    """Return the state of all worlds of a batch, or of one of them.
 
     Raises:
         RuntimeError: a world was never reset, and has no state.
@@ -47,7 +47,7 @@ def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
 
 
 def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
-    """Go on from a snapshot of as many worlds as the batch has.
+    """Restore a snapshot of as many worlds as the batch has.
 
     Raises:
         TypeError, ValueError: see `_unpack`, or it has another number of worlds; nothing changes.

@@ -1,4 +1,4 @@
-"""What is against the player: enemies, the boss and its shards, in their colliders' shapes."""
+"""The player's opponents: enemies, the boss and its shards, in the shapes of their colliders."""
 
 import math
 from typing import Any
@@ -10,7 +10,7 @@ from ..game.boss import MOUTH
 from ..game.shapes import BOSS_SHAPE, ENEMY_SHAPE, SHARD_SHAPE
 from ..rules import BOSS_HITS, BOSS_X, BOSS_Y, FIELD_HEIGHT, MAX_ENEMIES, MAX_SHARDS
 from ..state import ABSENT
-from .canvas import mark_shape
+from .canvas import DrawnRecord, note_shape
 from .palette import (
     BOSS_BROW,
     BOSS_EYE,
@@ -30,10 +30,11 @@ from .palette import (
     SHARD,
     SHARD_RIM,
 )
-from .raster import draw_line, fill_convex, fill_disc
+from .raster import Colour, Image, draw_line, fill_convex, fill_disc
+from .scenery import Scenery
 from .view import WALL_WIDTH
 
-# Parts of the collider's size.
+# Fractions of the collider's size.
 ENEMY_BODY = 0.76
 BOSS_BODY = 0.94
 BOSS_PLATE = 0.66
@@ -41,11 +42,11 @@ SHARD_BODY = 0.6
 # Lengths in brick widths.
 EYE_RADIUS = 0.13
 PUPIL_RADIUS = 0.065
-GAZE = 0.055  # how far a pupil looks out of the middle
+GAZE = 0.055  # how far a pupil moves from the middle of the eye
 MOUTH_RADIUS = 0.24
-GLOW_TICKS = 30  # before it throws the boss's mouth begins to glow
+GLOW_TICKS = 30  # so long before the boss throws, its mouth glows
 CRACK_WIDTH = 0.055
-# One crack more for each hit: from (x, y) to (x, y), from the boss's middle, y up.
+# Each hit adds a crack, from (x, y) to (x, y), relative to the boss's middle, y up.
 BOSS_CRACKS = np.array(
     [
         (-1.09, 1.19, -0.81, 0.84),
@@ -68,11 +69,13 @@ BOSS_CRACKS = np.array(
 
 
 @inlined
-def draw_enemies(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
-    """Draw the enemies; above the gate through which they come they are not seen."""
+def draw_enemies(
+    image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any
+) -> None:
+    """Draw the enemies; what is still above the gate is hidden."""
     if world.enemies == 0:
         return
-    view = sheets.views[0]
+    view = scenery.views[0]
     ceiling = FIELD_HEIGHT + (WALL_WIDTH if view.header == 1 else 0.0)
     hidden = max(0, math.ceil(view.bottom - ceiling * view.scale))
     for enemy in range(MAX_ENEMIES):
@@ -80,23 +83,23 @@ def draw_enemies(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) ->
             shape = rules.shapes[ENEMY_SHAPE + world.enemy_kind[enemy]]
             x = view.left + world.enemy_x[enemy] * view.scale
             y = view.bottom - world.enemy_y[enemy] * view.scale
-            mark_shape(drawn, image, shape, x, y, view.scale, hidden)
-            _draw_enemy(image[hidden:], sheets, world, rules, enemy, x, y - hidden)
+            note_shape(drawn, image, shape, x, y, view.scale, hidden)
+            _draw_enemy(image[hidden:], scenery, world, rules, enemy, x, y - hidden)
 
 
 @inlined
 def _draw_enemy(
-    image: Any, sheets: Any, world: Any, rules: Any, enemy: int, x: float, y: float
+    image: Image, scenery: Scenery, world: Any, rules: Any, enemy: int, x: float, y: float
 ) -> None:
-    """Draw an enemy, its body at x, y in pixels: it looks where it goes."""
-    palette, scale = sheets.palette, sheets.views[0].scale
+    """Draw an enemy at x, y in pixels; it looks where it goes."""
+    palette, scale = scenery.palette, scenery.views[0].scale
     kind = world.enemy_kind[enemy]
     shape, edges = rules.shapes[ENEMY_SHAPE + kind], rules.edges
     rim, lit = palette[ENEMY_RIM + kind], palette[ENEMY_LIT + kind]
     fill_convex(image, shape, edges, x, y, scale, rim, rim)
     fill_convex(image, shape, edges, x, y, ENEMY_BODY * scale, lit, palette[ENEMY_SHADED + kind])
     fill_disc(image, x, y, EYE_RADIUS * scale, palette[EYE])
-    if sheets.views[0].header == 0:
+    if scenery.views[0].header == 0:
         return
     vx, vy = world.enemy_vx[enemy], world.enemy_vy[enemy]
     speed = math.sqrt(vx * vx + vy * vy)
@@ -105,15 +108,15 @@ def _draw_enemy(
 
 
 @inlined
-def draw_boss(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
-    """Draw the boss, if it is there: redder with its damage, and a crack for each hit."""
+def draw_boss(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any) -> None:
+    """Draw the boss, if there is one; each hit makes it redder and adds a crack."""
     if world.boss_hits == 0:
         return
-    view, palette = sheets.views[0], sheets.palette
+    view, palette = scenery.views[0], scenery.palette
     scale = view.scale
     x, y = view.left + BOSS_X * scale, view.bottom - BOSS_Y * scale
     shape, edges = rules.shapes[BOSS_SHAPE], rules.edges
-    mark_shape(drawn, image, shape, x, y, scale, 0)
+    note_shape(drawn, image, shape, x, y, scale, 0)
     step = (BOSS_HITS - world.boss_hits) * BOSS_STEPS // BOSS_HITS
     lit, shaded = palette[BOSS_LIT + step], palette[BOSS_SHADED + step]
     rim, face, brow = palette[BOSS_RIM], palette[BOSS_FACE], palette[BOSS_BROW]
@@ -147,7 +150,7 @@ def draw_boss(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> No
 
 @kernel
 def _draw_stroke(
-    image: Any,
+    image: Image,
     x: float,
     y: float,
     scale: float,
@@ -156,9 +159,9 @@ def _draw_stroke(
     end_x: float,
     end_y: float,
     width: float,
-    colour: Any,
+    colour: Colour,
 ) -> None:
-    """Draw a line between two points of a body that is at x, y in pixels."""
+    """Draw a line between two points of a body at x, y in pixels."""
     draw_line(
         image,
         x + start_x * scale,
@@ -171,11 +174,11 @@ def _draw_stroke(
 
 
 @inlined
-def draw_shards(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
-    """Draw what the boss has thrown."""
+def draw_shards(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any) -> None:
+    """Draw the shards that the boss has thrown."""
     if world.shards == 0:
         return
-    view, palette = sheets.views[0], sheets.palette
+    view, palette = scenery.views[0], scenery.palette
     scale = view.scale
     shape, edges = rules.shapes[SHARD_SHAPE], rules.edges
     rim, body = palette[SHARD_RIM], palette[SHARD]
@@ -185,6 +188,6 @@ def draw_shards(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
             continue
         x = view.left + world.shard_x[shard] * scale
         y = view.bottom - world.shard_y[shard] * scale
-        mark_shape(drawn, image, shape, x, y, scale, 0)
+        note_shape(drawn, image, shape, x, y, scale, 0)
         fill_convex(image, shape, edges, x, y, scale, rim, rim)
         fill_convex(image, shape, edges, x, y, size, body, body)

@@ -1,24 +1,38 @@
-"""A small stroke font of our own: capitals, digits and some punctuation, drawn at any size.
+"""A stroke font: capitals, digits and some punctuation, drawn at any size.
 
-Each glyph is a set of strokes on a grid 4 wide and 6 high, corners cut off at 45 degrees. A stroke
+Each glyph is a set of strokes on a grid 4 wide and 6 high, with corners cut at 45 degrees. A stroke
 is written as points joined by hyphens, a point as its two coordinates: ``"00-26-40 12-32"`` is an
 A. All strokes of a glyph are drawn at once, so that they join without a seam.
+
+Our own font, because the score line is part of observations: it must be compiled and the same on
+every machine.
 """
 
 import itertools
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...physics.kernels import kernel
-from .raster import blend, first_pixel, last_pixel, squared_distance_to_segment, stroke_coverage
+from .raster import (
+    Colour,
+    Image,
+    blend,
+    first_pixel,
+    last_pixel,
+    squared_distance_to_segment,
+    stroke_coverage,
+)
 
-GRID_HEIGHT = 6.0  # of a capital
+Codes: TypeAlias = Any  # int64 [n], the ASCII codes of a text
+
+# In units of the grid.
+GRID_HEIGHT = 6.0
 ADVANCE = 5.6  # from one glyph to the next
-STROKE = 0.95  # a stroke's width
-GLYPH_WIDTH = (4.0 + STROKE) / (GRID_HEIGHT + STROKE)  # of a glyph's height
+STROKE = 0.95  # the width of a stroke
+GLYPH_WIDTH = (4.0 + STROKE) / (GRID_HEIGHT + STROKE)  # as a fraction of a glyph's height
 
 GLYPHS = {
     " ": "",
@@ -84,7 +98,7 @@ def _segments(strokes: str) -> list[tuple[float, ...]]:
 
 
 def _tables() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return all segments, and where those of each ASCII code begin (code + 1: where they end)."""
+    """Return all segments, and the index of the first one of each ASCII code."""
     segments: list[tuple[float, ...]] = []
     first = [0]
     for code in range(128):
@@ -98,7 +112,7 @@ _ZERO = ord("0")
 
 
 def encode(text: str) -> NDArray[np.int64]:
-    """Return a text's codes for `draw_text`, int64 [n]; small letters become capitals.
+    """Return the codes of a text, int64 [n], for `draw_text`; small letters become capitals.
 
     Raises:
         ValueError: the font has no glyph for a character.
@@ -114,13 +128,13 @@ def encode(text: str) -> NDArray[np.int64]:
 
 @kernel
 def text_step(height: float) -> float:
-    """Return how far apart the glyphs of a text of a height are."""
+    """Return the distance from glyph to glyph in a text of some height."""
     return height * ADVANCE / (GRID_HEIGHT + STROKE)
 
 
 @kernel
-def draw_glyph(image: Any, code: int, x: float, y: float, height: float, colour: Any) -> None:
-    """Draw the glyph of an ASCII code into a box: left x, top y, height in pixels."""
+def draw_glyph(image: Image, code: int, x: float, y: float, height: float, colour: Colour) -> None:
+    """Draw the glyph of an ASCII code; x, y: its upper left corner, in pixels like the height."""
     scale = height / (GRID_HEIGHT + STROKE)
     half = STROKE / 2 * scale
     left, bottom = x + half, y + height - half
@@ -150,8 +164,10 @@ def draw_glyph(image: Any, code: int, x: float, y: float, height: float, colour:
 
 
 @kernel
-def draw_text(image: Any, codes: Any, x: float, y: float, height: float, colour: Any) -> None:
-    """Draw a text of ASCII codes (int64 [n], see `encode`); left, top and height in pixels."""
+def draw_text(
+    image: Image, codes: Codes, x: float, y: float, height: float, colour: Colour
+) -> None:
+    """Draw a text, see `encode`; x, y: its upper left corner, in pixels like the height."""
     step = text_step(height)
     for index in range(codes.shape[0]):
         draw_glyph(image, codes[index], x + index * step, y, height, colour)
@@ -168,12 +184,14 @@ def count_digits(value: int) -> int:
 
 
 @kernel
-def draw_number(image: Any, value: int, x: float, y: float, height: float, colour: Any) -> None:
-    """Draw an integer >= 0; left, top and height in pixels."""
+def draw_number(
+    image: Image, value: int, x: float, y: float, height: float, colour: Colour
+) -> None:
+    """Draw an integer >= 0; x, y: its upper left corner, in pixels like the height."""
     step = text_step(height)
     count = count_digits(value)
-    for place in range(count):
+    for index in range(count):
         rest = value
-        for _ in range(count - 1 - place):
+        for _ in range(count - 1 - index):
             rest //= 10
-        draw_glyph(image, _ZERO + rest % 10, x + place * step, y, height, colour)
+        draw_glyph(image, _ZERO + rest % 10, x + index * step, y, height, colour)

@@ -4,11 +4,11 @@ from typing import Any
 
 from ...physics.kernels import inlined
 from ..rules import FIELD_HEIGHT, NO_POWER
-from .canvas import copy_bytes
+from .canvas import DrawnRecord, Lines, copy_bytes
 from .font import count_digits, draw_number, text_step
 from .palette import GRIP_LIT, PADDLE_LIT, PADDLE_SHADED, VALUE
 from .player import draw_capsule
-from .raster import fill_rectangle, fill_rounded_rectangle, first_pixel
+from .raster import Image, fill_rectangle, fill_rounded_rectangle, first_pixel
 from .scenery import (
     LABEL_HEIGHT,
     LABEL_TOP,
@@ -17,21 +17,25 @@ from .scenery import (
     SCORE_X,
     VALUE_HEIGHT,
     VALUE_TOP,
+    Palette,
+    Scenery,
 )
-from .view import WALL_WIDTH
+from .view import WALL_WIDTH, ViewRecord
 
-# The small paddles that count the lives, in brick widths; more of them are a number.
+# Each life is a small paddle, in brick widths. More than `LIVES_SHOWN` are one paddle and a number.
 LIFE_WIDTH = 0.66
 LIFE_HEIGHT = 0.2
 LIFE_STEP = 0.8
 LIVES_SHOWN = 5
-SCORE_WIDTH = 4.4  # the score grows smaller to stay within it
+SCORE_WIDTH = 4.4  # a long score is drawn smaller, to fit
 POWER_X = 10.55  # the middle of the capsule that shows the power
 
 
 @inlined
-def draw_header(image: Any, lines: Any, drawn: Any, sheets: Any, world: Any) -> None:
-    """Draw the score line anew if it shows anything otherwise than it is."""
+def draw_header(
+    image: Image, lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any
+) -> None:
+    """Draw the score line again if it is out of date."""
     if (
         drawn.score == world.score
         and drawn.lives == world.lives
@@ -39,23 +43,23 @@ def draw_header(image: Any, lines: Any, drawn: Any, sheets: Any, world: Any) -> 
         and drawn.power == world.power
     ):
         return
-    view = sheets.views[0]
+    view = scenery.views[0]
     ceiling = view.bottom - (FIELD_HEIGHT + WALL_WIDTH) * view.scale
     for row in range(first_pixel(ceiling)):
-        copy_bytes(lines[row], sheets.background[row])
+        copy_bytes(lines[row], scenery.background[row])
     drawn.score = world.score
     drawn.lives = world.lives
     drawn.header_round = world.round_number
     drawn.power = world.power
-    _draw_values(image, view, sheets.palette, world)
+    _draw_values(image, view, scenery.palette, world)
     if world.power != NO_POWER:
         middle = LABEL_TOP - LABEL_HEIGHT / 2
         x, y = view.left + POWER_X * view.scale, view.bottom - middle * view.scale
-        draw_capsule(image, sheets, world.power, x, y)
+        draw_capsule(image, scenery, world.power, x, y)
 
 
 @inlined
-def _draw_values(image: Any, view: Any, palette: Any, world: Any) -> None:
+def _draw_values(image: Image, view: ViewRecord, palette: Palette, world: Any) -> None:
     """Draw the numbers of the score line, and the lives as small paddles."""
     scale = view.scale
     top = view.bottom - VALUE_TOP * scale
@@ -73,8 +77,8 @@ def _draw_values(image: Any, view: Any, palette: Any, world: Any) -> None:
 
 
 @inlined
-def _draw_life(image: Any, palette: Any, x: float, y: float, scale: float) -> None:
-    """Draw a small paddle on the score line; x, y: upper left corner of the line, in pixels."""
+def _draw_life(image: Image, palette: Palette, x: float, y: float, scale: float) -> None:
+    """Draw a small paddle on the score line; x, y: its upper left corner, in pixels."""
     top = y + (VALUE_HEIGHT - LIFE_HEIGHT) / 2 * scale
     bottom = top + LIFE_HEIGHT * scale
     right = x + LIFE_WIDTH * scale

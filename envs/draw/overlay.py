@@ -1,4 +1,4 @@
-"""Text over a picture of the game: titles, and what a player should know now."""
+"""Text over a picture of the game: titles and short messages to the player."""
 
 from collections.abc import Sequence
 
@@ -10,25 +10,25 @@ from .palette import PALETTE, VALUE, WALL_LIT
 from .view import FULL_HEIGHT, FULL_WIDTH
 
 # Heights in brick widths.
-MIDDLE = 11.7  # of all lines, from the picture's upper edge: between most levels' bricks and paddle
+MIDDLE = 11.7  # of the text, from the picture's upper edge: between most bricks and the paddle
 TITLE_HEIGHT = 0.72
 TEXT_HEIGHT = 0.3
-LINE_SPACE = 0.22  # below a line
-BAND_SPACE = 0.35  # of the dark band above and below the lines
+LINE_SPACE = 0.22  # between lines
+BAND_SPACE = 0.35  # between the text and the edges of the dark band
 WIDEST = 10.8  # longer lines are drawn smaller
-DIMMED = 4  # the band's pixels are divided by this
+DIMMING = 4  # the band's pixels are divided by this
 
 
 def draw_overlay(
     picture: NDArray[np.uint8], title: str, lines: Sequence[str], band: bool = True
 ) -> None:
-    """Draw a title and lines below it into a picture, in the middle between left and right.
+    """Draw a title and lines below it into a picture, centred.
 
     Args:
         picture: uint8 [height, width, 3].
-        title: in large letters, if not empty; lines: in small ones. Without either nothing is
-            drawn. What the font lacks becomes a question mark.
-        band: whether what is behind them is dimmed.
+        title: drawn in large letters, unless it is empty; lines: drawn in small letters. Without
+            either, nothing is drawn. Characters that the font lacks become question marks.
+        band: whether a band of the picture behind the text is dimmed.
     """
     if not title and not lines:
         return
@@ -39,7 +39,7 @@ def draw_overlay(
     top = MIDDLE - needed / 2
     if band:
         upper, lower = (top - BAND_SPACE) * scale, (top + needed + BAND_SPACE) * scale
-        picture[max(0, round(upper)) : round(lower)] //= DIMMED
+        picture[max(0, round(upper)) : round(lower)] //= DIMMING
     for text, height, colour in texts:
         _draw_line(picture, text, top, height, colour, scale)
         top += height + LINE_SPACE
@@ -48,7 +48,7 @@ def draw_overlay(
 def _draw_line(
     picture: NDArray[np.uint8], text: str, top: float, height: float, colour: int, scale: float
 ) -> None:
-    """Draw a line in the middle between left and right; top and height in brick widths."""
+    """Draw a centred line; top and height in brick widths."""
     codes = encode("".join(letter if letter in GLYPHS else "?" for letter in text.upper()))
     height = min(height, WIDEST / max(1.0, len(codes) * text_step(1.0)))
     left = picture.shape[1] / 2 - len(codes) * text_step(height) * scale / 2

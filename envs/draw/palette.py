@@ -1,7 +1,7 @@
 """The colours of the pictures: float64 [n, 3], red, green and blue from 0 to 255.
 
-The eight colours of bricks are steps of one ladder of brightness, about 25 of 255 apart, and so are
-the seven of capsules, so that they can be told apart in greyscale and by eyes that confuse hues.
+The brightness of the eight brick colours differs by at least 20 from one to the next, and so does
+that of the seven capsules: they can be told apart in grey, and by colour-blind players.
 """
 
 import numpy as np
@@ -12,32 +12,32 @@ from ..rules import BRICK_LETTERS, CAPSULES, ENEMY_KINDS, POWERS
 # Brightness of red, green and blue (ITU-R BT.601), the weights of most greyscale conversions.
 LUMA = np.array([0.299, 0.587, 0.114])
 
-# The bricks' rows: a body's colour at its upper and lower edge, its lit and its shaded edges; add
-# the brick's kind.
+# Each constant is the index of a row, or of the first of several rows.
+# Bricks (add the kind): the body's colour at its upper and lower edge, its lit and shaded edges.
 _KINDS = len(BRICK_LETTERS)
-BRICK = 0
-BRICK_FOOT = BRICK + _KINDS
+BRICK_BODY = 0
+BRICK_FOOT = BRICK_BODY + _KINDS
 BRICK_LIT = BRICK_FOOT + _KINDS
 BRICK_SHADED = BRICK_LIT + _KINDS
-# The capsules' rows, likewise: body, lit and shaded edge, and the letter; add the capsule's kind.
-CAPSULE = BRICK_SHADED + _KINDS
-CAPSULE_LIT = CAPSULE + CAPSULES + 1
+# Capsules (add the kind): body, lit edge, shaded edge, and the letter.
+CAPSULE_BODY = BRICK_SHADED + _KINDS
+CAPSULE_LIT = CAPSULE_BODY + CAPSULES + 1
 CAPSULE_SHADED = CAPSULE_LIT + CAPSULES + 1
 LETTER = CAPSULE_SHADED + CAPSULES + 1
-# The paddle's rows: its body and its ends at their upper and lower side; add the power.
+# The paddle (add the power): its body and its ends, each at the upper and lower side.
 PADDLE_LIT = LETTER + CAPSULES + 1
 PADDLE_SHADED = PADDLE_LIT + POWERS + 1
 GRIP_LIT = PADDLE_SHADED + POWERS + 1
 GRIP_SHADED = GRIP_LIT + POWERS + 1
-# The enemies' rows: upper and lower side, and rim; add the enemy's kind.
+# Enemies (add the kind): upper and lower side, and rim.
 ENEMY_LIT = GRIP_SHADED + POWERS + 1
 ENEMY_SHADED = ENEMY_LIT + ENEMY_KINDS
 ENEMY_RIM = ENEMY_SHADED + ENEMY_KINDS
-# The boss's rows: upper and lower side; add the step of its damage.
+# The boss (add the step of its damage): upper and lower side.
 BOSS_STEPS = 4
 BOSS_LIT = ENEMY_RIM + ENEMY_KINDS
 BOSS_SHADED = BOSS_LIT + BOSS_STEPS
-# A row each, in the order of `_OTHERS`.
+# One row for each of these, in the order of `_OTHERS`.
 _FIRST = BOSS_SHADED + BOSS_STEPS
 FRAME = _FIRST
 FIELD_UPPER = _FIRST + 1
@@ -95,7 +95,7 @@ _CAPSULES = [
     (238, 238, 240),  # player
 ]
 _PADDLES = [
-    # At the upper and lower side, and its ends' at the upper and lower side.
+    # The body at its upper and lower side, the ends at their upper and lower side.
     [(226, 232, 242), (98, 108, 134), (255, 122, 92), (158, 22, 34)],  # no power
     [(128, 232, 150), (26, 96, 66), (236, 255, 214), (60, 140, 70)],  # catch
     [(226, 232, 242), (98, 108, 134), (120, 176, 255), (30, 52, 190)],  # enlarge
@@ -149,7 +149,7 @@ _OTHERS = [
     (255, 120, 220),  # ARROW
 ]
 
-# A capsule's letter is white, or dark on a body that is brighter than this.
+# A capsule's letter is white, or dark if the body is brighter than this.
 _BRIGHT = 140.0
 
 
@@ -180,5 +180,5 @@ def _palette() -> NDArray[np.float64]:
 
 
 PALETTE = _palette()
-# Not as a product of matrices, whose rounding may differ from machine to machine.
+# No product of matrices: its rounding may differ from machine to machine.
 GREYS = (PALETTE * LUMA).sum(axis=1, keepdims=True)  # float64 [n, 1]

@@ -9,7 +9,7 @@ from ..checks import check_integer
 from ..config import MAX_SIZE
 from .canvas import Drawn
 from .frame import draw_frame
-from .scenery import scenery
+from .scenery import make_scenery
 from .view import FULL_HEIGHT, FULL_WIDTH
 
 DEFAULT_HEIGHT = 512  # pixels: 32 per brick width
@@ -25,18 +25,19 @@ def draw_world(
 ) -> NDArray[np.uint8]:
     """Return a picture of one world of a batch, a fresh uint8 array [height, width, channels].
 
-    The same state gives the same bits, everywhere. No display is needed.
+    The same state gives the same bits on every machine. No display is needed.
 
     Args:
         worlds: `World` records [n].
         rules: `Rules` [1].
-        index: of the world.
+        index: the world.
         height: in pixels.
-        width: in pixels; None gives the field, its walls and the score line just enough.
+        width: in pixels; None: as wide as the field with its walls.
         channels: 3 for red, green and blue, 1 for grey.
 
     Raises:
-        TypeError, ValueError: a size is no integer, or out of range.
+        TypeError: a size is no integer.
+        ValueError: a size is out of range.
     """
     check_integer("height", height, 1, MAX_SIZE)
     if width is None:
@@ -47,5 +48,5 @@ def draw_world(
     frame = np.empty((int(height), int(width), int(channels)), np.uint8)
     lines = frame.reshape(frame.shape[0], -1)
     drawn = np.zeros(1, Drawn)
-    draw_frame(frame, lines, drawn[0], scenery(*frame.shape), worlds[int(index)], rules[0])
+    draw_frame(frame, lines, drawn[0], make_scenery(*frame.shape), worlds[int(index)], rules[0])
     return frame

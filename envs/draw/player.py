@@ -1,4 +1,4 @@
-"""What the player has: the paddle with its powers, balls, beams; and capsules, which bring them."""
+"""What the player has: the paddle with its powers, balls and beams; and the capsules."""
 
 from typing import Any
 
@@ -18,14 +18,14 @@ from ..rules import (
     PADDLE_Y,
 )
 from ..state import ABSENT
-from .canvas import mark, mark_shape
+from .canvas import DrawnRecord, note_box, note_shape
 from .font import GLYPH_WIDTH, draw_glyph
 from .palette import (
     BALL,
     BALL_RIM,
     BEAM,
     BEAM_CORE,
-    CAPSULE,
+    CAPSULE_BODY,
     CAPSULE_LIT,
     CAPSULE_SHADED,
     GRIP_LIT,
@@ -36,47 +36,49 @@ from .palette import (
     PADDLE_SHADED,
 )
 from .raster import (
+    Image,
     blend_channel,
     fill_disc,
     fill_rectangle,
     fill_rounded_rectangle,
     first_pixel,
+    height_part,
     last_pixel,
     mix,
     row_span,
     span_coverage,
 )
+from .scenery import Scenery
 
-GRIP = 0.45  # the length of the paddle's coloured ends
+# Lengths in brick widths.
+GRIP = 0.45  # of the paddle's coloured ends
 MUZZLE_WIDTH = 0.2  # of the laser, where its beams start
 CAPSULE_CORNER = 0.1
 CAPSULE_RIM = 0.035
 LETTER_HEIGHT = 0.27
-STRIPE = 0.2  # in the letter's place where it could not be read
+STRIPE = 0.2  # replaces a letter that would be too small to read
 
 _LETTERS = tuple(ord(letter) for letter in CAPSULE_LETTERS)
 
 
 @inlined
-def draw_paddle(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> None:
-    """Draw the paddle's collider, with ends and a body that show its power."""
-    view, palette = sheets.views[0], sheets.palette
+def draw_paddle(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any) -> None:
+    """Draw the paddle in its collider's shape; the colours of ends and body show its power."""
+    view, palette = scenery.views[0], scenery.palette
     shape, edges = rules.shapes[world.paddle_shape], rules.edges
     power, scale = world.power, view.scale
     x, y = view.left + world.paddle_x * scale, view.bottom - PADDLE_Y * scale
     seam = (shape.upper_x - GRIP) * scale
     muzzle = BEAM_PLACE * world.paddle_half * scale if power == LASER else -scale
-    mark_shape(drawn, image, shape, x, y, scale, 0)
+    note_shape(drawn, image, shape, x, y, scale, 0)
     top, bottom = y - shape.upper_y * scale, y - shape.lower_y * scale
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
-        part = min(max((row + 0.5 - top) / (bottom - top), 0.0), 1.0)
-        span = row_span(edges, shape.first, shape.count, x, y, scale, row)
-        if span[4] == 0.0:
+        part = height_part(row, top, bottom)
+        span = row_span(shape, edges, x, y, scale, row)
+        if span.height == 0.0:
             continue
-        for column in range(first_pixel(span[0]), last_pixel(span[3], image.shape[1])):
-            coverage = span_coverage(
-                span, edges, shape.first, shape.count, x, y, scale, row, column
-            )
+        for column in range(first_pixel(span.begin), last_pixel(span.end, image.shape[1])):
+            coverage = span_coverage(span, shape, edges, x, y, scale, row, column)
             across = abs(column + 0.5 - x)
             grip = min(max(across - seam + 0.5, 0.0), 1.0)
             hot = min(max(MUZZLE_WIDTH / 2 * scale - abs(across - muzzle) + 0.5, 0.0), 1.0)
@@ -94,16 +96,16 @@ def draw_paddle(image: Any, drawn: Any, sheets: Any, world: Any, rules: Any) -> 
 
 
 @inlined
-def draw_balls(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
-    """Draw the balls; where there is room, with a rim, and a highlight at the upper left."""
-    view, palette = sheets.views[0], sheets.palette
+def draw_balls(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+    """Draw the balls; in large pictures with a rim, and a highlight at the upper left."""
+    view, palette = scenery.views[0], scenery.palette
     radius = BALL_RADIUS * view.scale
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == ABSENT:
             continue
         x = view.left + world.ball_x[ball] * view.scale
         y = view.bottom - world.ball_y[ball] * view.scale
-        mark(drawn, image, x - radius, y - radius, x + radius, y + radius)
+        note_box(drawn, image, x - radius, y - radius, x + radius, y + radius)
         if view.header == 1:
             fill_disc(image, x, y, radius, palette[BALL_RIM])
             fill_disc(image, x - 0.12 * radius, y - 0.12 * radius, 0.78 * radius, palette[BALL])
@@ -112,9 +114,9 @@ def draw_balls(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
 
 
 @inlined
-def draw_beams(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
-    """Draw the laser's beams: bright in the middle."""
-    view, palette = sheets.views[0], sheets.palette
+def draw_beams(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+    """Draw the laser's beams, bright in the middle."""
+    view, palette = scenery.views[0], scenery.palette
     across, along = BEAM_WIDTH / 2 * view.scale, BEAM_HEIGHT / 2 * view.scale
     core = palette[BEAM_CORE]
     for beam in range(MAX_BEAMS):
@@ -123,33 +125,33 @@ def draw_beams(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
         x = view.left + world.beam_x[beam] * view.scale
         y = view.bottom - world.beam_y[beam] * view.scale
         left, top, right, bottom = x - across, y - along, x + across, y + along
-        mark(drawn, image, left, top, right, bottom)
+        note_box(drawn, image, left, top, right, bottom)
         fill_rectangle(image, left, top, right, bottom, core, palette[BEAM])
         inset = across / 2
         fill_rectangle(image, x - inset, top, x + inset, bottom, core, core)
 
 
 @inlined
-def draw_falling_capsule(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
-    """Draw the capsule that falls, if there is one."""
+def draw_falling_capsule(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+    """Draw the falling capsule, if there is one."""
     if world.capsule == NO_CAPSULE:
         return
-    view = sheets.views[0]
+    view = scenery.views[0]
     scale = view.scale
     x, y = view.left + world.capsule_x * scale, view.bottom - world.capsule_y * scale
     across, along = CAPSULE_WIDTH / 2 * scale, CAPSULE_HEIGHT / 2 * scale
-    mark(drawn, image, x - across, y - along, x + across, y + along)
-    draw_capsule(image, sheets, world.capsule, x, y)
+    note_box(drawn, image, x - across, y - along, x + across, y + along)
+    draw_capsule(image, scenery, world.capsule, x, y)
 
 
 @kernel
-def draw_capsule(image: Any, sheets: Any, kind: int, x: float, y: float) -> None:
-    """Draw a capsule of a kind, its middle at x, y in pixels, with its letter if it can be read."""
-    palette, scale = sheets.palette, sheets.views[0].scale
+def draw_capsule(image: Image, scenery: Scenery, kind: int, x: float, y: float) -> None:
+    """Draw a capsule, its middle at x, y in pixels; in large pictures with its letter."""
+    palette, scale = scenery.palette, scenery.views[0].scale
     across, along = CAPSULE_WIDTH / 2 * scale, CAPSULE_HEIGHT / 2 * scale
     left, top, right, bottom = x - across, y - along, x + across, y + along
-    body, letter = palette[CAPSULE + kind], palette[LETTER + kind]
-    if sheets.views[0].header == 0:
+    body, letter = palette[CAPSULE_BODY + kind], palette[LETTER + kind]
+    if scenery.views[0].header == 0:
         half = STRIPE / 2 * scale
         fill_rectangle(image, left, top, right, bottom, body, body)
         fill_rectangle(image, x - half, top, x + half, bottom, letter, letter)

@@ -1,4 +1,7 @@
-"""PNG files with nothing but the standard library: a picture for whoever has no imaging package."""
+"""PNG files, written with the standard library only.
+
+Written by hand because twenty lines let anyone save a picture without an imaging library.
+"""
 
 import struct
 import zlib
@@ -9,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_DEPTH = 8  # bits a channel
-_COLOUR_TYPES = {1: 0, 3: 2}  # by channels: grey; red, green and blue
-_SMALLEST = 9  # zlib's level
+_DEPTH = 8  # bits per channel
+_COLOUR_TYPES = {1: 0, 3: 2}  # by number of channels: grey; red, green and blue
+_BEST_COMPRESSION = 9  # zlib's level
 
 
 def write_png(path: str | PathLike[str], picture: NDArray[np.uint8]) -> None:
-    """Write a picture, uint8 [height, width, 1 or 3], into a file; an older one is replaced.
+    """Write a picture, uint8 [height, width, 1 or 3], to a file, and replace an older file.
 
     Raises:
         OSError: the file can't be written.
@@ -24,14 +27,14 @@ def write_png(path: str | PathLike[str], picture: NDArray[np.uint8]) -> None:
 
 
 def png_bytes(picture: NDArray[np.uint8]) -> bytes:
-    """Return what a PNG file of a picture, uint8 [height, width, 1 or 3], holds."""
+    """Return the bytes of a PNG file for a picture, uint8 [height, width, 1 or 3]."""
     height, width, channels = picture.shape
     head = struct.pack(">IIBBBBB", width, height, _DEPTH, _COLOUR_TYPES[channels], 0, 0, 0)
-    # Each line begins with the number of its filter: 0, none. Pictures of the game are flat areas,
-    # which zlib alone packs well.
+    # Each line begins with the number of its filter: 0, none. The game's pictures consist of flat
+    # areas, which zlib packs well without filters.
     lines = np.zeros((height, 1 + width * channels), np.uint8)
     lines[:, 1:] = picture.reshape(height, -1)
-    data = zlib.compress(lines.tobytes(), _SMALLEST)
+    data = zlib.compress(lines.tobytes(), _BEST_COMPRESSION)
     return _SIGNATURE + _chunk(b"IHDR", head) + _chunk(b"IDAT", data) + _chunk(b"IEND", b"")
 
 

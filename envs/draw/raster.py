@@ -1,43 +1,48 @@
-"""Drawing primitives: kernels that mix colours into a picture by the exact area they cover.
+"""Drawing primitives: kernels that blend colours into a picture by the exact area they cover.
 
-A picture is uint8 [height, width, channels]. Coordinates are float64 pixels: x to the right, y
-down, and pixel (row r, column c) is the square from (c, r) to (c + 1, r + 1). A colour is float64
-[channels], from 0 to 255; with one channel the same code draws in grey. What lies outside of the
-picture is cut off. Nothing is allocated, and no display is needed.
+Coordinates are float64 pixels: x to the right, y down; pixel (row r, column c) is the square from
+(c, r) to (c + 1, r + 1). With one channel the same code draws in grey. The picture's edges cut off
+what lies outside.
+
+Written by hand because pictures are observations: no library draws them inside compiled kernels,
+without a display, and with the same bits on every machine.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple, TypeAlias
 
 from ...physics.kernels import kernel
 
-# Horizontal lines per pixel row along which round outlines are integrated: the midpoint rule on a
+Image: TypeAlias = Any  # uint8 [height, width, channels]
+Colour: TypeAlias = Any  # float64 [channels], from 0 to 255
+
+# Horizontal lines per pixel row along which round outlines are integrated. The midpoint rule on a
 # width that only grows (or shrinks) within the row errs by less than 1 / 16 of a pixel.
 SUBLINES = 8
-# Below this difference (pixels) of the widths at its two ends, a trapezoid is taken as a rectangle;
-# the exact formula would divide by nearly nothing.
+# A trapezoid whose two widths differ by less than this (pixels) counts as a rectangle: the exact
+# formula would divide by nearly 0.
 NEARLY_UPRIGHT = 1e-6
 
 
 @kernel
 def mix(one: float, other: float, part: float) -> float:
-    """Return the mixture of two numbers; part: of the other one, in [0, 1]."""
+    """Return a mixture of two numbers; part in [0, 1] is the share of the other one."""
     return one + (other - one) * part
 
 
 @kernel
 def blend_channel(
-    image: Any, row: int, column: int, channel: int, colour: float, coverage: float
+    image: Image, row: int, column: int, channel: int, colour: float, coverage: float
 ) -> None:
-    """Mix a colour's channel (0 to 255) into that of one pixel, by its coverage in [0, 1]."""
+    """Blend one channel of a colour (0 to 255) into a pixel, by coverage in [0, 1]."""
     image[row, column, channel] = int(
         mix(float(image[row, column, channel]), colour, coverage) + 0.5
     )
 
 
 @kernel
-def blend(image: Any, row: int, column: int, colour: Any, coverage: float) -> None:
-    """Mix a colour into one pixel, by its coverage in [0, 1]."""
+def blend(image: Image, row: int, column: int, colour: Colour, coverage: float) -> None:
+    """Blend a colour into a pixel, by coverage in [0, 1]."""
     for channel in range(image.shape[2]):
         blend_channel(image, row, column, channel, colour[channel], coverage)
 
@@ -50,7 +55,7 @@ def overlap(low: float, high: float, lower: float, upper: float) -> float:
 
 @kernel
 def first_pixel(low: float) -> int:
-    """Return the first pixel >= 0 that a range beginning at a coordinate touches."""
+    """Return the first pixel >= 0 that a range from a coordinate on touches."""
     return math.floor(max(low, 0.0))
 
 
@@ -61,13 +66,19 @@ def last_pixel(high: float, size: int) -> int:
 
 
 @kernel
+def height_part(row: int, top: float, bottom: float) -> float:
+    """Return where the middle of a row of pixels lies, from 0 at the top to 1 at the bottom."""
+    return min(max((row + 0.5 - top) / (bottom - top), 0.0), 1.0)
+
+
+@kernel
 def fill_rectangle(
-    image: Any, left: float, top: float, right: float, bottom: float, upper: Any, lower: Any
+    image: Image, left: float, top: float, right: float, bottom: float, upper: Colour, lower: Colour
 ) -> None:
     """Fill a rectangle with a vertical gradient between two colours (flat if they are the same)."""
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
         height = overlap(float(row), row + 1.0, top, bottom)
-        part = min(max((row + 0.5 - top) / (bottom - top), 0.0), 1.0)
+        part = height_part(row, top, bottom)
         for column in range(first_pixel(left), last_pixel(right, image.shape[1])):
             coverage = height * overlap(float(column), column + 1.0, left, right)
             for channel in range(image.shape[2]):
@@ -79,7 +90,7 @@ def fill_rectangle(
 def rounded_coverage(
     row: int, column: int, left: float, top: float, right: float, bottom: float, radius: float
 ) -> float:
-    """Return the part of a pixel that a rectangle with rounded corners covers, by `SUBLINES`."""
+    """Return the fraction of a pixel that a rectangle with rounded corners covers."""
     low = max(float(row), top)
     high = min(row + 1.0, bottom)
     if high <= low:
@@ -87,7 +98,7 @@ def rounded_coverage(
     area = 0.0
     for line in range(SUBLINES):
         y = low + (high - low) * ((line + 0.5) / SUBLINES)
-        # How far the line lies beyond the centres of the corners' circles, and what that cuts off.
+        # How far the line lies beyond the centres of the corners, and how much they cut off there.
         beyond = max(max(top + radius - y, y - bottom + radius), 0.0)
         cut = radius - math.sqrt(max(radius * radius - beyond * beyond, 0.0))
         area += overlap(float(column), column + 1.0, left + cut, right - cut)
@@ -96,15 +107,15 @@ def rounded_coverage(
 
 @kernel
 def fill_rounded_rectangle(
-    image: Any,
+    image: Image,
     left: float,
     top: float,
     right: float,
     bottom: float,
     radius: float,
-    colour: Any,
+    colour: Colour,
 ) -> None:
-    """Fill a rectangle whose corners are rounded by a radius in pixels."""
+    """Fill a rectangle with rounded corners; radius in pixels."""
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
         for column in range(first_pixel(left), last_pixel(right, image.shape[1])):
             coverage = rounded_coverage(row, column, left, top, right, bottom, radius)
@@ -112,38 +123,26 @@ def fill_rounded_rectangle(
 
 
 @kernel
-def fill_disc(image: Any, x: float, y: float, radius: float, colour: Any) -> None:
+def fill_disc(image: Image, x: float, y: float, radius: float, colour: Colour) -> None:
     """Fill a disc; centre and radius in pixels."""
     fill_rounded_rectangle(image, x - radius, y - radius, x + radius, y + radius, radius, colour)
 
 
 @kernel
 def stroke_coverage(distance: float, half_width: float) -> float:
-    """Return the part of a pixel under a stroke whose middle line passes at a distance, pixels.
+    """Return the fraction of a pixel under a stroke, from its distance to the stroke's middle line.
 
-    Exact for strokes along the axes, as if the pixel were turned along the stroke for others.
+    Distance and half width are in pixels. The result is exact for strokes along an axis; for others
+    it is as if the pixel were turned to face the stroke.
     """
     return overlap(distance - 0.5, distance + 0.5, -half_width, half_width)
-
-
-@kernel
-def draw_ring(image: Any, x: float, y: float, radius: float, width: float, colour: Any) -> None:
-    """Draw a circle's line; centre, radius of the line's middle, and its width in pixels."""
-    reach = radius + width / 2 + 1.0
-    for row in range(first_pixel(y - reach), last_pixel(y + reach, image.shape[0])):
-        for column in range(first_pixel(x - reach), last_pixel(x + reach, image.shape[1])):
-            across, down = column + 0.5 - x, row + 0.5 - y
-            distance = abs(math.sqrt(across * across + down * down) - radius)
-            coverage = stroke_coverage(distance, width / 2)
-            if coverage > 0.0:
-                blend(image, row, column, colour, coverage)
 
 
 @kernel
 def squared_distance_to_segment(
     x: float, y: float, start_x: float, start_y: float, end_x: float, end_y: float
 ) -> float:
-    """Return the squared distance of a point from a segment (its ends may coincide)."""
+    """Return the squared distance of a point from a segment, which may have no length."""
     along_x, along_y = end_x - start_x, end_y - start_y
     length = along_x * along_x + along_y * along_y
     part = 0.0
@@ -156,13 +155,13 @@ def squared_distance_to_segment(
 
 @kernel
 def draw_line(
-    image: Any,
+    image: Image,
     start_x: float,
     start_y: float,
     end_x: float,
     end_y: float,
     width: float,
-    colour: Any,
+    colour: Colour,
 ) -> None:
     """Draw a line with round ends; coordinates and width in pixels."""
     reach = width / 2 + 1.0
@@ -204,7 +203,7 @@ def area_beyond_edge(
     if bottom <= top:
         return 0.0
     slope = (end_x - start_x) / (end_y - start_y)
-    # The widths of what lies to the right, at the upper and the lower end of the edge's part.
+    # How much of the pixel lies to the right, at the upper and the lower end of the edge's part.
     upper = column + 1.0 - (start_x + (top - start_y) * slope)
     lower = column + 1.0 - (start_x + (bottom - start_y) * slope)
     area = (bottom - top) * _integral_of_clamped(upper, lower, 1.0)
@@ -213,16 +212,17 @@ def area_beyond_edge(
 
 @kernel
 def convex_coverage(
-    edges: Any, first: int, count: int, x: float, y: float, scale: float, row: int, column: int
+    shape: Any, edges: Any, x: float, y: float, scale: float, row: int, column: int
 ) -> float:
-    """Return the part of a pixel inside a bounded shape with the edges [first, first + count).
+    """Return the fraction of a pixel inside a bounded shape without rounding.
 
     Args:
-        edges: `Edge` records in body coordinates (y up); x, y: the body's place in pixels.
-        scale: pixels per unit of length.
+        shape: `Shape` record; edges: `Edge` records of all shapes, in body coordinates, y up.
+        x, y: the body's position in pixels; scale: pixels per unit of length.
+        row, column: the pixel.
     """
     area = 0.0
-    for index in range(first, first + count):
+    for index in range(shape.first, shape.first + shape.count):
         edge = edges[index]
         area += area_beyond_edge(
             x + edge.start_x * scale,
@@ -235,17 +235,25 @@ def convex_coverage(
     return min(abs(area), 1.0)
 
 
-@kernel
-def row_span(
-    edges: Any, first: int, count: int, x: float, y: float, scale: float, row: int
-) -> tuple[float, float, float, float, float]:
-    """Return (begin, left, right, end, height): what of a row of pixels a shape covers.
+class Span(NamedTuple):
+    """The part of a pixel row that a shape covers, in pixels.
 
-    From begin to end it covers anything, and from left to right, between its sides, each pixel by
-    the height. A height of 0 is that of an empty row. The arguments are `convex_coverage`'s.
+    From begin to end the shape covers something. From left to right it covers each pixel fully from
+    side to side, by the height. An empty span has the height 0.
     """
+
+    begin: float
+    left: float
+    right: float
+    end: float
+    height: float
+
+
+@kernel
+def row_span(shape: Any, edges: Any, x: float, y: float, scale: float, row: int) -> Span:
+    """Return the `Span` of a row of pixels; the arguments are those of `convex_coverage`."""
     begin, left, right, end, height = math.inf, -math.inf, math.inf, -math.inf, 0.0
-    for index in range(first, first + count):
+    for index in range(shape.first, shape.first + shape.count):
         edge = edges[index]
         start_x, start_y = x + edge.start_x * scale, y - edge.start_y * scale
         end_x, end_y = x + edge.end_x * scale, y - edge.end_y * scale
@@ -261,53 +269,50 @@ def row_span(
             height += bottom - top
         else:
             right, end = min(right, min(upper, lower)), max(end, max(upper, lower))
-    return begin, left, right, end, height
+    return Span(begin, left, right, end, height)
 
 
 @kernel
 def span_coverage(
-    span: tuple[float, float, float, float, float],
+    span: Span,
+    shape: Any,
     edges: Any,
-    first: int,
-    count: int,
     x: float,
     y: float,
     scale: float,
     row: int,
     column: int,
 ) -> float:
-    """Return `convex_coverage`, for which most pixels of a row need no more than its `row_span`."""
-    if column >= span[1] and column + 1.0 <= span[2]:
-        return span[4]
-    return convex_coverage(edges, first, count, x, y, scale, row, column)
+    """Return what `convex_coverage` returns; for most pixels the `Span` of their row is enough."""
+    if column >= span.left and column + 1.0 <= span.right:
+        return span.height
+    return convex_coverage(shape, edges, x, y, scale, row, column)
 
 
 @kernel
 def fill_convex(
-    image: Any,
+    image: Image,
     shape: Any,
     edges: Any,
     x: float,
     y: float,
     scale: float,
-    upper: Any,
-    lower: Any,
+    upper: Colour,
+    lower: Colour,
 ) -> None:
-    """Fill a bounded `Shape` without rounding, its body at a place in pixels; see below.
+    """Fill a bounded `Shape` without rounding with a vertical gradient.
 
     The colours are those at its upper and lower end. A smaller scale than the picture's draws the
-    shape smaller, about its body's place.
+    shape smaller, about its body's position.
     """
     top, bottom = y - shape.upper_y * scale, y - shape.lower_y * scale
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
-        part = min(max((row + 0.5 - top) / (bottom - top), 0.0), 1.0)
-        span = row_span(edges, shape.first, shape.count, x, y, scale, row)
-        if span[4] == 0.0:
+        part = height_part(row, top, bottom)
+        span = row_span(shape, edges, x, y, scale, row)
+        if span.height == 0.0:
             continue
-        for column in range(first_pixel(span[0]), last_pixel(span[3], image.shape[1])):
-            coverage = span_coverage(
-                span, edges, shape.first, shape.count, x, y, scale, row, column
-            )
+        for column in range(first_pixel(span.begin), last_pixel(span.end, image.shape[1])):
+            coverage = span_coverage(span, shape, edges, x, y, scale, row, column)
             for channel in range(image.shape[2]):
                 colour = mix(upper[channel], lower[channel], part)
                 blend_channel(image, row, column, channel, colour, coverage)

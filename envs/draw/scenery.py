@@ -1,9 +1,9 @@
-"""What the pictures of one size share: the background, and each look of a brick."""
+"""What all pictures of one size share: the background, and each look of a brick."""
 
 import itertools
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from ...physics.kernels import kernel
 from ..rules import COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, GATE_X, GOLD, ROWS, SILVER
 from .font import draw_text, encode
 from .palette import (
-    BRICK,
+    BRICK_BODY,
     BRICK_FOOT,
     BRICK_LIT,
     BRICK_SHADED,
@@ -33,6 +33,8 @@ from .palette import (
     WALL_SHADED,
 )
 from .raster import (
+    Colour,
+    Image,
     blend,
     draw_line,
     fill_disc,
@@ -41,9 +43,12 @@ from .raster import (
     last_pixel,
     overlap,
 )
-from .view import EXIT_BOTTOM, EXIT_TOP, GATE_WIDTH, WALL_WIDTH, make_view, place
+from .view import EXIT_BOTTOM, EXIT_TOP, GATE_WIDTH, WALL_WIDTH, ViewRecord, make_view, to_pixels
 
-# The score line's labels and values: upper side, height and left ends, in the field's brick widths.
+Palette: TypeAlias = Any  # float64 [colours, channels]
+Looks: TypeAlias = Any  # uint8 [LOOKS, rows, columns, channels], the lattice full of each look
+
+# The score line's labels and values: upper side, height and left ends, in brick widths.
 LABEL_TOP = FIELD_HEIGHT + WALL_WIDTH + 1.25
 LABEL_HEIGHT = 0.34
 VALUE_TOP = FIELD_HEIGHT + WALL_WIDTH + 0.75
@@ -52,8 +57,8 @@ SCORE_X = 0.0
 ROUND_X = 4.7
 LIVES_X = 7.1
 
-# The looks of a cell of the lattice: without a brick, with one of a kind (numbered as the kinds
-# are), and silver that was hit, by the part of its hits that it has taken.
+# The looks of a cell: empty, a brick of each kind (numbered like the kinds), and damaged silver in
+# some steps of damage.
 DAMAGED = GOLD
 DAMAGES = 3
 LOOKS = GOLD + 1 + DAMAGES
@@ -62,7 +67,7 @@ MORTAR = 0.04  # between bricks
 BEVEL = 0.07  # a brick's lit and shaded edges
 SHINE_STRENGTH = 0.75  # from 0 to 1
 CRACK_WIDTH = 0.05
-# One crack more for each step of damage: x from the left, y from the upper side, from 0 to 1.
+# Each step of damage adds a crack: x from the left, y from the upper side, from 0 to 1.
 CRACKS = np.array(
     [
         [(0.42, 0.02), (0.50, 0.40), (0.40, 0.62), (0.52, 0.98)],
@@ -79,8 +84,8 @@ class Scenery(NamedTuple):
         views: where the field lies, `View` [1].
         palette: float64 [colours, channels].
         background: uint8 [height, width * channels], a picture without anything that changes.
-        looks: uint8 [LOOKS, rows, columns * channels], the bytes of the lattice's pixels, full of
-            bricks of one look each.
+        looks: uint8 [LOOKS, rows, columns * channels], the pixels of the lattice, full of bricks of
+            each look.
     """
 
     views: Any
@@ -90,8 +95,8 @@ class Scenery(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def scenery(height: int, width: int, channels: int) -> Scenery:
-    """Return what all pictures of a size in pixels share, drawn on the first call.
+def make_scenery(height: int, width: int, channels: int) -> Scenery:
+    """Return what all pictures of a size in pixels share; the first call draws it.
 
     Args:
         channels: 3 for red, green and blue, 1 for grey.
@@ -121,39 +126,41 @@ def scenery(height: int, width: int, channels: int) -> Scenery:
 
 
 class _Painter:
-    """Draws into a picture by the field's coordinates and the palette's rows."""
+    """Draws into a picture in the field's coordinates and the palette's colours."""
 
-    def __init__(self, image: NDArray[np.uint8], view: Any, palette: NDArray[np.float64]) -> None:
+    def __init__(self, image: NDArray[np.uint8], view: ViewRecord, palette: Palette) -> None:
         self.image = image
         self.view = view
         self.palette = palette
 
     def rectangle(self, box: tuple[float, ...], upper: int, lower: int) -> None:
         """Fill a box (left, bottom, right, top) with a gradient."""
-        left, bottom = place(self.view, box[0], box[1])
-        right, top = place(self.view, box[2], box[3])
+        left, bottom = to_pixels(self.view, box[0], box[1])
+        right, top = to_pixels(self.view, box[2], box[3])
         colours = self.palette[upper], self.palette[lower]
         fill_rectangle(self.image, left, top, right, bottom, *colours)
 
     def line(self, ends: tuple[float, ...], width: float, colour: int) -> None:
         """Draw a line between two points (x, y, x, y)."""
-        start, end = place(self.view, ends[0], ends[1]), place(self.view, ends[2], ends[3])
+        start, end = to_pixels(self.view, ends[0], ends[1]), to_pixels(self.view, ends[2], ends[3])
         width = float(width * self.view.scale)
         draw_line(self.image, *start, *end, width, self.palette[colour])
 
     def disc(self, x: float, y: float, radius: float, colour: int) -> None:
         """Fill a disc."""
         radius = float(radius * self.view.scale)
-        fill_disc(self.image, *place(self.view, x, y), radius, self.palette[colour])
+        fill_disc(self.image, *to_pixels(self.view, x, y), radius, self.palette[colour])
 
     def text(self, text: str, x: float, y: float, height: float, colour: int) -> None:
-        """Draw a text, its upper left corner at a point."""
+        """Draw a text; x, y: its upper left corner."""
         height = float(height * self.view.scale)
-        draw_text(self.image, encode(text), *place(self.view, x, y), height, self.palette[colour])
+        draw_text(
+            self.image, encode(text), *to_pixels(self.view, x, y), height, self.palette[colour]
+        )
 
 
 def _draw_backdrop(painter: _Painter) -> None:
-    """Fill the picture, and in it the field."""
+    """Fill the picture and, in it, the field."""
     height, width = float(painter.image.shape[0]), float(painter.image.shape[1])
     frame = painter.palette[FRAME]
     fill_rectangle(painter.image, 0.0, 0.0, width, height, frame, frame)
@@ -163,7 +170,7 @@ def _draw_backdrop(painter: _Painter) -> None:
 def _draw_pattern(painter: _Painter) -> None:
     """Draw a faint tiling of the field: hexagons with sides of one brick width."""
     rise = math.sqrt(0.75)
-    # Three sides of each hexagon, from its middle; the others are its neighbours'.
+    # Three sides of each hexagon, relative to its middle; the neighbours draw the others.
     outline = ((1.0, 0.0), (0.5, rise), (-0.5, rise), (-1.0, 0.0))
     for column in range(9):
         for row in range(-1, 9):
@@ -176,14 +183,14 @@ def _draw_pattern(painter: _Painter) -> None:
 
 
 def _draw_walls(painter: _Painter) -> None:
-    """Draw the two side walls, and the ceiling's where there is room, with their closed gates."""
+    """Draw the side walls and, in large pictures, the ceiling, with their closed gates."""
     header = painter.view.header
     top = FIELD_HEIGHT + (WALL_WIDTH if header else 0.0)
     for left in (-WALL_WIDTH, FIELD_WIDTH):
-        _draw_beam(painter, (left, 0.0, left + WALL_WIDTH, top))
+        _draw_wall(painter, (left, 0.0, left + WALL_WIDTH, top))
     if not header:
         return
-    _draw_beam(painter, (-WALL_WIDTH, FIELD_HEIGHT, FIELD_WIDTH + WALL_WIDTH, top))
+    _draw_wall(painter, (-WALL_WIDTH, FIELD_HEIGHT, FIELD_WIDTH + WALL_WIDTH, top))
     for y in (0.5, 4.25, 6.25, 8.25, 10.25, 12.25):
         for x in (-WALL_WIDTH / 2, FIELD_WIDTH + WALL_WIDTH / 2):
             painter.disc(x, y, 0.09, RIVET)
@@ -198,8 +205,8 @@ def _draw_walls(painter: _Painter) -> None:
     _draw_door(painter, box, (box[0], middle, box[2], middle))
 
 
-def _draw_beam(painter: _Painter, box: tuple[float, ...]) -> None:
-    """Draw a bar of wall that is lit from the upper left."""
+def _draw_wall(painter: _Painter, box: tuple[float, ...]) -> None:
+    """Draw a straight piece of wall, lit from the upper left."""
     left, bottom, right, top = box
     edge = 0.08
     painter.rectangle(box, WALL_SHADED, WALL_SHADED)
@@ -210,7 +217,7 @@ def _draw_beam(painter: _Painter, box: tuple[float, ...]) -> None:
 def _draw_door(
     painter: _Painter, box: tuple[float, float, float, float], seam: tuple[float, ...]
 ) -> None:
-    """Draw a closed gate into a wall: two wings that meet at a seam (x, y, x, y)."""
+    """Draw a closed gate in a wall: two wings that meet at a seam (x, y, x, y)."""
     left, bottom, right, top = box
     edge = 0.04
     painter.rectangle(box, SEAM, SEAM)
@@ -219,14 +226,14 @@ def _draw_door(
 
 
 def _draw_labels(painter: _Painter) -> None:
-    """Draw what never changes of the score line."""
+    """Draw the labels of the score line."""
     for text, x in (("SCORE", SCORE_X), ("ROUND", ROUND_X), ("LIVES", LIVES_X)):
         painter.text(text, x, LABEL_TOP, LABEL_HEIGHT, LABEL)
 
 
 @kernel
-def draw_looks(looks: Any, view: Any, palette: Any) -> None:
-    """Fill the lattice with bricks of each look; looks: uint8 [LOOKS, rows, columns, channels]."""
+def draw_looks(looks: Looks, view: ViewRecord, palette: Palette) -> None:
+    """Fill the lattice with bricks of each look."""
     rows, columns = view[0].rows, view[0].columns
     for look in range(1, LOOKS):
         for row in range(ROWS):
@@ -245,8 +252,8 @@ def draw_looks(looks: Any, view: Any, palette: Any) -> None:
 
 @kernel
 def draw_brick(
-    image: Any,
-    palette: Any,
+    image: Image,
+    palette: Palette,
     look: int,
     left: float,
     top: float,
@@ -260,7 +267,7 @@ def draw_brick(
     right -= MORTAR * scale
     bottom -= MORTAR * scale
     bevel = BEVEL * scale
-    body = palette[BRICK + kind]
+    body = palette[BRICK_BODY + kind]
     lit = palette[BRICK_LIT + kind]
     shaded = palette[BRICK_SHADED + kind]
     foot = palette[BRICK_FOOT + kind]
@@ -283,9 +290,9 @@ def draw_brick(
 
 @kernel
 def _draw_shine(
-    image: Any, colour: Any, left: float, top: float, right: float, bottom: float, scale: float
+    image: Image, colour: Colour, left: float, top: float, right: float, bottom: float, scale: float
 ) -> None:
-    """Draw a bright band across a brick of metal, and a narrow one beside it."""
+    """Draw a wide and a narrow bright band across a brick of metal."""
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
         height = overlap(float(row), row + 1.0, top, bottom)
         for column in range(first_pixel(left), last_pixel(right, image.shape[1])):
@@ -300,8 +307,8 @@ def _draw_shine(
 
 @kernel
 def _draw_crack(
-    image: Any,
-    colour: Any,
+    image: Image,
+    colour: Colour,
     crack: int,
     left: float,
     top: float,

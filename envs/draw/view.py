@@ -1,7 +1,7 @@
 """Where the game lies in a picture of any size."""
 
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,13 +12,12 @@ WALL_WIDTH = 0.5
 HEADER_HEIGHT = 1.5  # above the ceiling's wall, for the score line
 FULL_WIDTH = FIELD_WIDTH + 2 * WALL_WIDTH
 FULL_HEIGHT = FIELD_HEIGHT + WALL_WIDTH + HEADER_HEIGHT
-# The gates in the walls: how wide those in the ceiling are, and where the exit on the right begins
-# and ends.
+# The width of the gates in the ceiling, and where the exit in the right wall begins and ends.
 GATE_WIDTH = 1.0
 EXIT_BOTTOM = 1.25
 EXIT_TOP = 2.5
-# Pixels per brick width below which nobody could read the score line. Then it and the ceiling's
-# wall are left out, and the field fills the height (84 x 84: exactly 6 pixels per brick width).
+# With fewer pixels per brick width nobody could read the score line. Then the score line and the
+# ceiling are left out, and the field fills the height (84 x 84: exactly 6 pixels per brick width).
 HEADER_SCALE = 8.0
 
 # Lengths in pixels, x to the right and y down.
@@ -30,17 +29,18 @@ View = np.dtype(
             ("left", np.float64),  # x of the field's left edge
             ("bottom", np.float64),  # y of the field's lower edge
             ("header", np.int64),  # 1: there is a score line
-            # The pixels at which the lattice's cells begin: the nearest whole ones, so that no
-            # pixel belongs to two cells, and a brick is crisp.
+            # The pixels at which the cells of the lattice begin, rounded: no pixel belongs to two
+            # cells, and bricks are crisp.
             ("columns", np.int64, (COLUMNS + 1,)),
             ("rows", np.int64, (ROWS + 1,)),
         ],
     )
 )
+ViewRecord: TypeAlias = Any  # one `View`
 
 
 def make_view(height: int, width: int) -> Any:
-    """Return how the field lies in a picture: in the middle, as large as fits; `View` [1]."""
+    """Return where the field lies in a picture, `View` [1]: centred, as large as fits."""
     view = np.zeros(1, View)
     record = view[0]
     scale = min(height / FULL_HEIGHT, width / FULL_WIDTH)
@@ -58,6 +58,6 @@ def make_view(height: int, width: int) -> Any:
     return view
 
 
-def place(view: Any, x: float, y: float) -> tuple[float, float]:
+def to_pixels(view: ViewRecord, x: float, y: float) -> tuple[float, float]:
     """Return the pixel coordinates of a point of the field."""
     return float(view.left + x * view.scale), float(view.bottom - y * view.scale)

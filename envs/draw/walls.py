@@ -5,19 +5,21 @@ from typing import Any
 from ...physics.kernels import inlined
 from ..rules import FIELD_HEIGHT, FIELD_WIDTH, GATE_TICKS, GATE_X, GATES, MAX_ENEMIES
 from ..state import ENTERING
-from .canvas import mark
+from .canvas import DrawnRecord, note_box
 from .palette import ARROW, LAMP, OPENING
-from .raster import draw_line, fill_rectangle
+from .raster import Image, draw_line, fill_rectangle
+from .scenery import Scenery
 from .view import EXIT_BOTTOM, EXIT_TOP, GATE_WIDTH, WALL_WIDTH
 
-EDGE = 0.06  # of a wing of a gate, lit
-# Without a ceiling's wall in the picture a gate is a mark in the field's upper edge, so high.
+# Lengths in brick widths.
+EDGE = 0.06  # the lit edge of a gate's wing
+# In pictures without the ceiling, a gate is a mark of this height at the field's upper edge.
 MARK_HEIGHT = 0.2
 
 
 @inlined
 def gate_opening(world: Any, gate: int) -> float:
-    """Return how far a gate of the ceiling is open, from 0 to 1."""
+    """Return how far a gate in the ceiling is open, from 0 to 1."""
     for enemy in range(MAX_ENEMIES):
         enters = world.enemy_state[enemy] == ENTERING
         if enters and abs(world.enemy_x[enemy] - GATE_X[gate]) < GATE_WIDTH:
@@ -28,11 +30,11 @@ def gate_opening(world: Any, gate: int) -> float:
 
 
 @inlined
-def draw_gates(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
-    """Draw the gates of the ceiling that are not closed, with lit edges on their wings."""
+def draw_gates(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+    """Draw the gates in the ceiling that are not closed."""
     if world.enemies == 0 and world.enemy_wait >= GATE_TICKS:
         return
-    view, palette = sheets.views[0], sheets.palette
+    view, palette = scenery.views[0], scenery.palette
     lamp, opening = palette[LAMP], palette[OPENING]
     scale = view.scale
     bottom = view.bottom - FIELD_HEIGHT * scale
@@ -45,35 +47,35 @@ def draw_gates(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
         left, right = x - half, x + half
         if view.header == 0:
             low = bottom + MARK_HEIGHT * scale
-            mark(drawn, image, left, bottom, right, low)
+            note_box(drawn, image, left, bottom, right, low)
             fill_rectangle(image, left, bottom, right, low, lamp, lamp)
             continue
         top, edge = bottom - WALL_WIDTH * scale, min(EDGE * scale, half)
-        mark(drawn, image, left, top, right, bottom)
+        note_box(drawn, image, left, top, right, bottom)
         fill_rectangle(image, left, top, right, bottom, opening, opening)
         fill_rectangle(image, left, top, left + edge, bottom, lamp, lamp)
         fill_rectangle(image, right - edge, top, right, bottom, lamp, lamp)
 
 
 @inlined
-def draw_exit(image: Any, drawn: Any, sheets: Any, world: Any) -> None:
+def draw_exit(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
     """Draw the open exit in the right wall: arrows that point out."""
     if world.exit_open == 0:
         return
-    view, palette = sheets.views[0], sheets.palette
+    view, palette = scenery.views[0], scenery.palette
     arrow, opening = palette[ARROW], palette[OPENING]
     scale = view.scale
     left, right = view.left + FIELD_WIDTH * scale, view.left + (FIELD_WIDTH + WALL_WIDTH) * scale
     top, bottom = view.bottom - EXIT_TOP * scale, view.bottom - EXIT_BOTTOM * scale
-    mark(drawn, image, left, top, right, bottom)
+    note_box(drawn, image, left, top, right, bottom)
     fill_rectangle(image, left, top, right, bottom, arrow, arrow)
     if view.header == 0:
         return
     edge = EDGE * scale
     fill_rectangle(image, left, top + edge, right, bottom - edge, opening, opening)
     middle = (top + bottom) / 2
-    for place in range(2):
-        x = left + (0.1 + 0.17 * place) * scale
+    for index in range(2):
+        x = left + (0.1 + 0.17 * index) * scale
         reach = 0.14 * scale
         draw_line(image, x, middle - 2.0 * reach, x + reach, middle, edge, arrow)
         draw_line(image, x, middle + 2.0 * reach, x + reach, middle, edge, arrow)

@@ -1,7 +1,6 @@
 """What a ball does when it meets something: its speed, its course, the paddle's deflection."""
 
 import math
-from typing import Any
 
 from ...physics.kernels import inlined, inner, kernel
 from ...physics.pairs.response import reflect
@@ -18,20 +17,21 @@ from ..rules import (
     ZONE_ANGLES,
     ZONES6,
 )
+from ..state import RulesRecord, WorldRecord
 from .random import random_sign, uniform_between
 
 _FLAT = int(FLAT_ANGLE)
 
 
 @inner
-def ball_speed(world: Any, rules: Any) -> float:
+def ball_speed(world: WorldRecord, rules: RulesRecord) -> float:
     """Return the speed of the world's balls, per tick."""
     return float(rules.ball_speed * (1.0 + 0.25 * world.speed_stage))
 
 
 @kernel
-def direction(rules: Any, degrees: float) -> tuple[float, float]:
-    """Return (sine, cosine) of an angle in [0, 90] degrees, from the table (within 4e-5)."""
+def heading(rules: RulesRecord, degrees: float) -> tuple[float, float]:
+    """Return (sine, cosine) of an angle in [0, 90] degrees, from a table: off by up to 4e-5."""
     index = int(degrees)
     part = degrees - index
     x = rules.sine[index] * (1.0 - part) + rules.sine[index + 1] * part
@@ -41,7 +41,7 @@ def direction(rules: Any, degrees: float) -> tuple[float, float]:
 
 
 @inner
-def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
+def set_course(world: WorldRecord, rules: RulesRecord, ball: int, x: float, y: float) -> None:
     """Send a ball along (x, y) != 0 at the rules' speed, and not flatter than the rules allow."""
     length = math.sqrt(x * x + y * y)
     x /= length
@@ -55,8 +55,8 @@ def set_course(world: Any, rules: Any, ball: int, x: float, y: float) -> None:
 
 
 @inlined
-def count_hit(world: Any) -> None:
-    """Count a ball's hit on a brick: after some of them balls fly faster."""
+def count_hit(world: WorldRecord) -> None:
+    """Count a ball's hit on a brick; after certain numbers of hits all balls fly faster."""
     world.hits_since_serve += 1
     for index in range(len(SPEED_STAGE_HITS)):
         if world.hits_since_serve == SPEED_STAGE_HITS[index]:
@@ -65,9 +65,14 @@ def count_hit(world: Any) -> None:
 
 @inner
 def bounce_ball(
-    world: Any, rules: Any, ball: int, normal_x: float, normal_y: float, damaged: bool
+    world: WorldRecord,
+    rules: RulesRecord,
+    ball: int,
+    normal_x: float,
+    normal_y: float,
+    damaged: bool,
 ) -> None:
-    """Bounce a ball off something at rest with this normal; now and then break an endless loop."""
+    """Bounce a ball off something at rest; turn it if it is caught in an endless loop."""
     x, y = reflect(world.ball_vx[ball], world.ball_vy[ball], normal_x, normal_y, 1.0)
     world.ball_bounces[ball] = 0 if damaged else world.ball_bounces[ball] + 1
     if world.ball_bounces[ball] >= LOOP_BOUNCES:
@@ -78,10 +83,10 @@ def bounce_ball(
 
 @inlined
 def _turn(
-    world: Any, rules: Any, x: float, y: float, normal_x: float, normal_y: float
+    world: WorldRecord, rules: RulesRecord, x: float, y: float, normal_x: float, normal_y: float
 ) -> tuple[float, float]:
-    """Turn (x, y) by a random angle to a random side, or to the other one if that is outward."""
-    sine, cosine = direction(rules, uniform_between(world, LOOP_TURN_MIN, LOOP_TURN_MAX))
+    """Turn (x, y) by a random angle to a random side, but not back to what the ball has hit."""
+    sine, cosine = heading(rules, uniform_between(world, LOOP_TURN_MIN, LOOP_TURN_MAX))
     sine *= random_sign(world)
     turned_x, turned_y = x * cosine - y * sine, x * sine + y * cosine
     if turned_x * normal_x + turned_y * normal_y <= 0.0:
@@ -91,11 +96,16 @@ def _turn(
 
 @inlined
 def deflect_ball(
-    world: Any, rules: Any, ball: int, paddle_x: float, normal_x: float, normal_y: float
+    world: WorldRecord,
+    rules: RulesRecord,
+    ball: int,
+    paddle_x: float,
+    normal_x: float,
+    normal_y: float,
 ) -> bool:
-    """Send a ball off the paddle (normal: from paddle to ball); return whether it then recedes.
+    """Send a ball off the paddle; return whether it now moves away from the paddle.
 
-    It does not where the paddle, moved into a ball slower than itself, overtakes it.
+    It does not if the paddle overtakes a slower ball. The normal points from paddle to ball.
     """
     world.ball_bounces[ball] = 0
     if rules.deflection == PHYSICAL or normal_y <= 0.0:
@@ -112,11 +122,13 @@ def deflect_ball(
 
 
 @kernel
-def deflection(world: Any, rules: Any, offset: float, velocity_x: float) -> tuple[float, float]:
+def deflection(
+    world: WorldRecord, rules: RulesRecord, offset: float, velocity_x: float
+) -> tuple[float, float]:
     """Return the unit direction in which a ball leaves the paddle's upper side, by where it lands.
 
     Args:
-        offset: of the ball from the paddle's middle; velocity_x: with which the ball came.
+        offset: of the ball from the paddle's middle; velocity_x: of the arriving ball.
     """
     u = max(-1.0, min(1.0, offset / world.paddle_half))
     if rules.deflection == ZONES6:
@@ -126,12 +138,12 @@ def deflection(world: Any, rules: Any, offset: float, velocity_x: float) -> tupl
     else:
         degrees = DEFLECTION_MIN + DEFLECTION_RANGE * abs(u)
         side = 1.0 if u > 0.0 or (u == 0.0 and velocity_x >= 0.0) else -1.0
-    sine, cosine = direction(rules, degrees)
+    sine, cosine = heading(rules, degrees)
     return side * sine, cosine
 
 
 @inner
-def _recedes(world: Any, ball: int, normal_x: float, normal_y: float) -> bool:
+def _recedes(world: WorldRecord, ball: int, normal_x: float, normal_y: float) -> bool:
     """Tell whether a ball moves away from the paddle along the normal."""
     return bool(
         (world.ball_vx[ball] - world.paddle_vx) * normal_x + world.ball_vy[ball] * normal_y > 0.0

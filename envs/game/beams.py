@@ -1,6 +1,4 @@
-"""The laser's beams: two a shot, straight up, and each is one hit on what it meets first."""
-
-from typing import Any
+"""The laser's beams: each shot is two, which fly straight up and hit what they meet first."""
 
 from ...physics.kernels import inlined, inner
 from ...physics.pairs.approach import approach_between
@@ -15,23 +13,16 @@ from ..rules import (
     MAX_BEAMS,
     PADDLE_TOP,
 )
-from ..state import ABSENT, FLYING
+from ..state import ABSENT, FLYING, RulesRecord, WorldRecord
 from .boss import hit_boss, meet_boss
 from .bricks import hit_brick
 from .enemies import destroy_enemy, meet_enemies
-from .shapes import BEAM_SHAPE, BRICK_SHAPE, CEILING_SHAPE
-
-# What a beam meets.
-NOTHING = 0
-CEILING = 1
-BRICK = 2
-ENEMY = 3
-BOSS = 4
+from .shapes import BEAM_SHAPE, BOSS, BRICK, BRICK_SHAPE, CEILING, CEILING_SHAPE, ENEMY, NOTHING
 
 
 @inner
-def remove_beam(world: Any, beam: int) -> None:
-    """Take a beam away."""
+def remove_beam(world: WorldRecord, beam: int) -> None:
+    """Remove a beam."""
     world.beams -= world.beam_state[beam] != ABSENT
     world.beam_state[beam] = ABSENT
     world.beam_x[beam] = 0.0
@@ -39,16 +30,16 @@ def remove_beam(world: Any, beam: int) -> None:
 
 
 @inlined
-def remove_beams(world: Any) -> None:
-    """Take all beams away; the laser is ready to shoot."""
+def remove_beams(world: WorldRecord) -> None:
+    """Remove all beams; the laser is ready to shoot."""
     for beam in range(MAX_BEAMS):
         remove_beam(world, beam)
     world.beam_wait = 0
 
 
 @inlined
-def shoot(world: Any, rules: Any) -> None:
-    """Shoot two beams if the laser may and shall."""
+def shoot(world: WorldRecord, rules: RulesRecord) -> None:
+    """Shoot two beams if the laser is ready and the player fires."""
     world.beam_wait = max(0, world.beam_wait - 1)
     if world.power != LASER or world.beam_wait > 0 or world.beams > MAX_BEAMS - 2:
         return
@@ -59,7 +50,7 @@ def shoot(world: Any, rules: Any) -> None:
 
 
 @inner
-def _start_beam(world: Any, offset: float) -> None:
+def _start_beam(world: WorldRecord, offset: float) -> None:
     """Let a beam start on the paddle, at an offset from its middle."""
     beam = 0
     while world.beam_state[beam] != ABSENT:
@@ -71,8 +62,8 @@ def _start_beam(world: Any, offset: float) -> None:
 
 
 @inner
-def fly_beams(world: Any, rules: Any) -> None:
-    """Move the beams by one tick, into what they meet."""
+def fly_beams(world: WorldRecord, rules: RulesRecord) -> None:
+    """Move the beams by one tick; each ends at the first thing that it hits."""
     for beam in range(MAX_BEAMS):
         if world.beam_state[beam] == ABSENT or world.cleared == 1:
             continue
@@ -90,7 +81,7 @@ def fly_beams(world: Any, rules: Any) -> None:
 
 
 @inlined
-def _first_impact(world: Any, rules: Any, x: float, y: float) -> tuple[int, int]:
+def _first_impact(world: WorldRecord, rules: RulesRecord, x: float, y: float) -> tuple[int, int]:
     """Return what a beam at (x, y) meets first in this tick, and which one."""
     what, index = NOTHING, -1
     time, _, _ = approach_between(

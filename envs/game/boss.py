@@ -1,7 +1,6 @@
 """The boss: it takes many hits, and throws shards at the paddle that cost a life."""
 
 import math
-from typing import Any
 
 from ...physics.kernels import inlined, inner
 from ...physics.pairs.approach import approach_between, will_touch
@@ -15,17 +14,17 @@ from ..rules import (
     SHARD_SPEED,
     SHARD_TICKS,
 )
-from ..state import ABSENT, FLYING
+from ..state import ABSENT, FLYING, RulesRecord, WorldRecord
 from .scoring import add_score, count_damage
 from .shapes import BOSS_SHAPE, SHARD_SHAPE
 
-# From where in the boss, below its middle, it throws.
+# Shards start this far below the boss's middle.
 MOUTH = 1.0
 
 
 @inner
 def meet_boss(
-    rules: Any, shape: int, x: float, y: float, vx: float, vy: float, duration: float
+    rules: RulesRecord, shape: int, x: float, y: float, vx: float, vy: float, duration: float
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y) of a moving shape's impact on the boss; inf if none."""
     return approach_between(
@@ -34,8 +33,8 @@ def meet_boss(
 
 
 @inner
-def hit_boss(world: Any) -> None:
-    """Hit the boss once; after the last hit it is gone, and with it what it has thrown."""
+def hit_boss(world: WorldRecord) -> None:
+    """Hit the boss once; the last hit removes the boss and all shards."""
     world.boss_hits -= 1
     add_score(world, BOSS_POINTS)
     count_damage(world)
@@ -44,8 +43,8 @@ def hit_boss(world: Any) -> None:
 
 
 @inner
-def remove_shard(world: Any, shard: int) -> None:
-    """Take a shard away."""
+def remove_shard(world: WorldRecord, shard: int) -> None:
+    """Remove a shard."""
     world.shards -= world.shard_state[shard] != ABSENT
     world.shard_state[shard] = ABSENT
     world.shard_x[shard] = 0.0
@@ -55,16 +54,16 @@ def remove_shard(world: Any, shard: int) -> None:
 
 
 @inner
-def remove_shards(world: Any) -> None:
-    """Take all shards away; the boss waits before it throws again."""
+def remove_shards(world: WorldRecord) -> None:
+    """Remove all shards; the boss waits before it throws again."""
     for shard in range(MAX_SHARDS):
         remove_shard(world, shard)
     world.shard_wait = SHARD_TICKS
 
 
 @inlined
-def throw_shards(world: Any) -> None:
-    """Let the boss throw a shard at where the paddle is, now and then."""
+def throw_shards(world: WorldRecord) -> None:
+    """Let the boss throw a shard towards the paddle when it has waited long enough."""
     world.shard_wait = max(0, world.shard_wait - 1)
     if world.shard_wait > 0 or world.shards == MAX_SHARDS:
         return
@@ -83,8 +82,8 @@ def throw_shards(world: Any) -> None:
 
 
 @inlined
-def fly_shards(world: Any, rules: Any) -> bool:
-    """Move the shards by one tick; return whether one has landed on the moving paddle."""
+def fly_shards(world: WorldRecord, rules: RulesRecord) -> bool:
+    """Move the shards by one tick; return whether one has hit the moving paddle."""
     landed = False
     for shard in range(MAX_SHARDS):
         if world.shard_state[shard] == ABSENT:

@@ -1,7 +1,5 @@
 """Bricks: a round's beginning, and what a hit on a brick does."""
 
-from typing import Any
-
 from ...physics.kernels import inlined, inner, kernel
 from ..rules import (
     CELLS,
@@ -13,13 +11,14 @@ from ..rules import (
     SILVER_POINTS,
     UNBREAKABLE,
 )
+from ..state import MAX_CHANGES, RulesRecord, WorldRecord
 from .capsules import drop_capsule
 from .scoring import add_score, count_damage
 
 
 @kernel
 def hits_needed(kind: int, round_number: int) -> int:
-    """Return how many hits a brick of a kind takes in a round (`UNBREAKABLE`: no number does)."""
+    """Return how many hits break a brick of a kind in a round; `UNBREAKABLE` if none do."""
     if kind == EMPTY:
         return 0
     if kind == GOLD:
@@ -30,7 +29,7 @@ def hits_needed(kind: int, round_number: int) -> int:
 
 
 @inlined
-def lay_bricks(world: Any) -> None:
+def lay_bricks(world: WorldRecord) -> None:
     """Lay all bricks of the world's layout, and count the hits that they need."""
     world.needed = 0
     world.bricks_left = 0
@@ -41,16 +40,17 @@ def lay_bricks(world: Any) -> None:
             world.needed += hits
             world.bricks_left += 1
     world.hits_left = world.needed
-    world.lattice_changed = 1
+    world.brick_changes += MAX_CHANGES + 1  # all bricks: more than are remembered
 
 
 @inner
-def hit_brick(world: Any, rules: Any, cell: int) -> bool:
+def hit_brick(world: WorldRecord, rules: RulesRecord, cell: int) -> bool:
     """Hit a brick once; return whether it was damaged (gold is not)."""
     if world.brick_hits[cell] == UNBREAKABLE:
         return False
     world.brick_hits[cell] -= 1
-    world.lattice_changed = 1
+    world.brick_changes += 1
+    world.changed_cells[world.brick_changes % MAX_CHANGES] = cell
     count_damage(world)
     if world.brick_hits[cell] == 0:
         world.bricks_left -= 1

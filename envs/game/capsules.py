@@ -1,7 +1,5 @@
 """Capsules: hidden in coloured bricks, they fall, and the paddle catches them."""
 
-from typing import Any
-
 from ...physics.kernels import inlined, inner, kernel
 from ...physics.pairs.approach import will_touch
 from ...physics.pairs.lattice import cell_centre
@@ -24,6 +22,7 @@ from ..rules import (
     SLOW,
     SLOW_WEIGHT,
 )
+from ..state import RulesRecord, WorldRecord
 from .powers import take_capsule
 from .random import uniform
 from .scoring import add_score
@@ -32,8 +31,8 @@ from .shapes import CAPSULE_SHAPE
 
 
 @inlined
-def drop_capsule(world: Any, rules: Any, cell: int) -> None:
-    """Let a capsule fall from a broken brick, if it hid one and none may distract from it."""
+def drop_capsule(world: WorldRecord, rules: RulesRecord, cell: int) -> None:
+    """Let a broken brick drop its capsule, unless another one falls or several balls fly."""
     if world.capsule != NO_CAPSULE or balls_in_play(world) != 1:
         return
     if uniform(world) < rules.capsule_rate:
@@ -42,8 +41,8 @@ def drop_capsule(world: Any, rules: Any, cell: int) -> None:
 
 
 @inlined
-def _draw_capsule(world: Any) -> int:
-    """Draw a capsule that the player does not own already."""
+def _draw_capsule(world: WorldRecord) -> int:
+    """Draw a kind of capsule whose effect the player does not have yet."""
     kind = capsule_by_weight(uniform(world))
     while kind == world.power or (kind == BREAK and world.exit_open == 1):
         kind = capsule_by_weight(uniform(world))
@@ -52,7 +51,7 @@ def _draw_capsule(world: Any) -> int:
 
 @kernel
 def capsule_by_weight(number: float) -> int:
-    """Return the capsule at a place in [0, 1), of which each has its weight's share."""
+    """Return the kind of capsule at a number in [0, 1); each kind has its weight's share."""
     if number < RARE_WEIGHT:
         return BREAK
     if number < 2.0 * RARE_WEIGHT:
@@ -70,8 +69,8 @@ def capsule_by_weight(number: float) -> int:
 
 
 @inlined
-def fall_capsule(world: Any, rules: Any) -> None:
-    """Move the falling capsule by one tick: into the moving paddle, or out of the field."""
+def fall_capsule(world: WorldRecord, rules: RulesRecord) -> None:
+    """Move the falling capsule by one tick; the paddle may catch it, or it leaves the field."""
     if will_touch(
         rules.shapes,
         rules.edges,
@@ -95,8 +94,8 @@ def fall_capsule(world: Any, rules: Any) -> None:
 
 
 @inner
-def remove_capsule(world: Any) -> None:
-    """Take the falling capsule away, if there is one."""
+def remove_capsule(world: WorldRecord) -> None:
+    """Remove the falling capsule, if there is one."""
     world.capsule = NO_CAPSULE
     world.capsule_x = 0.0
     world.capsule_y = 0.0

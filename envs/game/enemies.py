@@ -1,11 +1,10 @@
 """Enemies: they come in through gates in the ceiling, drift down, circle, and dive at the paddle.
 
-An enemy's motion of a tick is planned before anything moves, as the paddle's is, so that balls meet
-it on its straight way at exact times.
+Like the paddle's, an enemy's motion in a tick is planned before anything moves. It is straight, so
+that the exact time is known at which a ball hits the enemy.
 """
 
 import math
-from typing import Any
 
 from ...physics.kernels import inlined, inner
 from ...physics.pairs.approach import approach_between, will_touch
@@ -31,19 +30,19 @@ from ..rules import (
     MAX_ENEMIES,
     PADDLE_Y,
 )
-from ..state import ABSENT, CIRCLING, DIVING, DRIFTING, ENTERING
+from ..state import ABSENT, CIRCLING, DIVING, DRIFTING, ENTERING, RulesRecord, WorldRecord
 from .random import random_sign, uniform, uniform_between
 from .scoring import add_score
 from .shapes import BRICK_SHAPE, CEILING_SHAPE, ENEMY_SHAPE, LEFT_WALL_SHAPE, RIGHT_WALL_SHAPE
 
-# Where an enemy starts above the ceiling's gate, and where it is lost below the field.
+# The heights at which an enemy starts above the ceiling, and leaves the game below the field.
 ABOVE = FIELD_HEIGHT + 0.4
 BELOW = -1.0
 
 
 @inner
-def remove_enemy(world: Any, enemy: int) -> None:
-    """Take an enemy away."""
+def remove_enemy(world: WorldRecord, enemy: int) -> None:
+    """Remove an enemy."""
     world.enemies -= world.enemy_state[enemy] != ABSENT
     world.enemy_state[enemy] = ABSENT
     world.enemy_kind[enemy] = 0
@@ -58,31 +57,31 @@ def remove_enemy(world: Any, enemy: int) -> None:
 
 
 @inlined
-def remove_enemies(world: Any) -> None:
-    """Take all enemies away, and draw when and where the next one comes in."""
+def remove_enemies(world: WorldRecord) -> None:
+    """Remove all enemies, and draw when and where the next one comes in."""
     for enemy in range(MAX_ENEMIES):
         remove_enemy(world, enemy)
     _draw_gate(world)
 
 
 @inner
-def _draw_gate(world: Any) -> None:
+def _draw_gate(world: WorldRecord) -> None:
     """Draw when and through which gate the next enemy comes in."""
     world.enemy_wait = int(uniform_between(world, ENEMY_TICKS_MIN, ENEMY_TICKS_MAX))
     world.enemy_gate = int(uniform(world) * GATES)
 
 
 @inner
-def destroy_enemy(world: Any, enemy: int) -> None:
-    """Let the player have destroyed an enemy."""
+def destroy_enemy(world: WorldRecord, enemy: int) -> None:
+    """Remove an enemy that the player has destroyed, and add its points."""
     remove_enemy(world, enemy)
     world.enemies_destroyed += 1
     add_score(world, ENEMY_POINTS)
 
 
 @inlined
-def open_gates(world: Any) -> None:
-    """Count down to the next enemy, and let it in; no gate opens while there are enough."""
+def open_gates(world: WorldRecord) -> None:
+    """Count down to the next enemy, and let it in; gates stay closed while the field is full."""
     if world.enemies < MAX_ENEMIES or world.enemy_wait > GATE_TICKS:
         world.enemy_wait -= 1
     if world.enemy_wait > 0:
@@ -100,10 +99,11 @@ def open_gates(world: Any) -> None:
 
 
 @inner
-def steer_enemies(world: Any, rules: Any) -> None:
-    """Plan each enemy's motion of this tick.
+def steer_enemies(world: WorldRecord, rules: RulesRecord) -> None:
+    """Plan each enemy's motion in this tick, one after the other.
 
-    Each is barred by where the later ones still are, and by the ways on which the earlier ones go.
+    The way of an enemy is blocked by the planned ways of earlier ones, and by the places where
+    later ones still are.
     """
     for enemy in range(MAX_ENEMIES):
         world.enemy_vx[enemy] = 0.0
@@ -117,8 +117,8 @@ def steer_enemies(world: Any, rules: Any) -> None:
 
 
 @inlined
-def _drift(world: Any, rules: Any, enemy: int) -> None:
-    """Go down if there is a way, or else sideways, and turn round where that ends."""
+def _drift(world: WorldRecord, rules: RulesRecord, enemy: int) -> None:
+    """Move an enemy down if the way is free, or else sideways; at an obstacle it turns round."""
     shape = ENEMY_SHAPE + world.enemy_kind[enemy]
     if world.enemy_state[enemy] == ENTERING and not overlap_between(
         rules.shapes,
@@ -146,8 +146,8 @@ def _drift(world: Any, rules: Any, enemy: int) -> None:
 
 
 @inlined
-def _fly(world: Any, rules: Any, enemy: int) -> None:
-    """Circle for a while, and turn the other way off what bars it; then dive."""
+def _fly(world: WorldRecord, rules: RulesRecord, enemy: int) -> None:
+    """Let an enemy circle for a while, and then dive; it bounces off what blocks its way."""
     x, y = world.enemy_course_x[enemy], world.enemy_course_y[enemy]
     speed = DIVE_SPEED
     if world.enemy_state[enemy] == CIRCLING:
@@ -176,13 +176,13 @@ def _fly(world: Any, rules: Any, enemy: int) -> None:
 
 @inner
 def _free_way(
-    world: Any, rules: Any, enemy: int, vx: float, vy: float
+    world: WorldRecord, rules: RulesRecord, enemy: int, vx: float, vy: float
 ) -> tuple[float, float, float]:
-    """Return (part, normal_x, normal_y): of a tick's motion the part that is free; what bars it.
+    """Return (part, normal_x, normal_y): the free part of a tick's motion, and what blocks it.
 
-    The normal is 0 if all is free.
+    The part is between 0 and 1. The normal, of the obstacle, is 0 if nothing blocks the way.
     """
-    # Looking a little further leaves the clearance.
+    # Looking a little further ahead keeps the clearance.
     ahead = CLEARANCE / math.sqrt(vx * vx + vy * vy)
     time, normal_x, normal_y = _first_obstacle(world, rules, enemy, vx, vy, 1.0 + ahead)
     for other in range(MAX_ENEMIES):
@@ -200,16 +200,16 @@ def _free_way(
             1.0 + ahead,
         )
         if met < math.inf:
-            # The other one keeps to its way, so that this one must not even go a part of its own.
+            # The other one goes on along its way, so this one must not move at all.
             return 0.0, hit_x, hit_y
     part = min(1.0, time - ahead)
-    # Less would be a rounding error's, for ever, where the way has ended.
+    # Where the way has ended, a rounding error leaves a smaller part than this, again and again.
     return part if part > CLEARANCE else 0.0, normal_x, normal_y
 
 
 @inlined
 def _first_obstacle(
-    world: Any, rules: Any, enemy: int, vx: float, vy: float, duration: float
+    world: WorldRecord, rules: RulesRecord, enemy: int, vx: float, vy: float, duration: float
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y) of an enemy's first impact on bricks and walls."""
     shape = ENEMY_SHAPE + world.enemy_kind[enemy]
@@ -239,8 +239,8 @@ def _first_obstacle(
 
 @inner
 def meet_enemies(
-    world: Any,
-    rules: Any,
+    world: WorldRecord,
+    rules: RulesRecord,
     shape: int,
     x: float,
     y: float,
@@ -276,8 +276,8 @@ def meet_enemies(
 
 
 @inlined
-def move_enemies(world: Any, rules: Any) -> None:
-    """Move the enemies by one tick: on, into the moving paddle, or out of the field."""
+def move_enemies(world: WorldRecord, rules: RulesRecord) -> None:
+    """Move the enemies by one tick; the paddle destroys those that it touches."""
     for enemy in range(MAX_ENEMIES):
         if world.enemy_state[enemy] == ABSENT:
             continue

@@ -1,9 +1,7 @@
 """How an episode, a round and a life begin."""
 
-from typing import Any
-
 from ...physics.kernels import inlined, inner
-from ..levels.generator import generate_level
+from ..levels.generator import lay_level
 from ..rules import (
     BOSS_HITS,
     CELLS,
@@ -12,7 +10,7 @@ from ..rules import (
     FIELD_WIDTH,
     NO_POWER,
 )
-from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED
+from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, Levels, RulesRecord, WorldRecord
 from .beams import remove_beams
 from .boss import remove_shards
 from .bricks import lay_bricks
@@ -24,8 +22,8 @@ from .serve import lay_ball
 
 
 @inlined
-def begin_episode(world: Any, rules: Any, levels: Any) -> None:
-    """Start a new game; of the world's past only its generator goes on, and how it shall begin."""
+def begin_episode(world: WorldRecord, rules: RulesRecord, levels: Levels) -> None:
+    """Start a new game. The world keeps its random generator, and how its episodes begin."""
     world.first_random = world.random
     world.done = 0
     world.decisions = 0
@@ -45,7 +43,7 @@ def begin_episode(world: Any, rules: Any, levels: Any) -> None:
         begin_round(world, rules, levels)
         return
     if world.start == GIVEN_SEED:
-        generate_level(world.kind, world.start_seed, _difficulty(world, rules, 0))
+        lay_level(world.kind, world.start_seed, _difficulty(world, rules, 0))
     elif world.start == GIVEN_LAYOUT:
         for cell in range(CELLS):
             world.kind[cell] = world.start_kind[cell]
@@ -53,7 +51,7 @@ def begin_episode(world: Any, rules: Any, levels: Any) -> None:
 
 
 @inner
-def begin_round(world: Any, rules: Any, levels: Any) -> None:
+def begin_round(world: WorldRecord, rules: RulesRecord, levels: Levels) -> None:
     """Begin the round of the world's number: a level of the table, or a generated one."""
     index = world.round_number - 1
     named = levels.shape[0] if rules.table_counts == 1 else 0
@@ -65,13 +63,17 @@ def begin_round(world: Any, rules: Any, levels: Any) -> None:
             world.kind[cell] = levels[index].kind[cell]
     else:
         seed = rules.first_seed + int(uniform(world) * rules.num_seeds)
-        generate_level(world.kind, seed, _difficulty(world, rules, index - named))
+        lay_level(world.kind, seed, _difficulty(world, rules, index - named))
     _lay_round(world, rules, boss)
 
 
 @inner
-def _difficulty(world: Any, rules: Any, generated: int) -> float:
-    """Return the difficulty of a generated round, of which there were so many before."""
+def _difficulty(world: WorldRecord, rules: RulesRecord, generated: int) -> float:
+    """Return the difficulty of a generated round.
+
+    Args:
+        generated: how many generated rounds came before it.
+    """
     if world.start_difficulty >= 0.0:
         return float(world.start_difficulty)
     if rules.difficulty >= 0.0:
@@ -80,7 +82,7 @@ def _difficulty(world: Any, rules: Any, generated: int) -> float:
 
 
 @inner
-def _lay_round(world: Any, rules: Any, boss: int) -> None:
+def _lay_round(world: WorldRecord, rules: RulesRecord, boss: int) -> None:
     """Lay the bricks of the world's layout, and the ball."""
     world.cleared = 0
     world.boss_hits = BOSS_HITS if boss == 1 else 0
@@ -91,8 +93,8 @@ def _lay_round(world: Any, rules: Any, boss: int) -> None:
 
 
 @inner
-def _begin_serve(world: Any, rules: Any) -> None:
-    """Lay a ball on the paddle, and take away all that flies."""
+def _begin_serve(world: WorldRecord, rules: RulesRecord) -> None:
+    """Lay a ball on the paddle, and remove everything that flies."""
     lay_ball(world)
     world.exit_open = 0
     remove_capsule(world)
@@ -103,8 +105,8 @@ def _begin_serve(world: Any, rules: Any) -> None:
 
 
 @inner
-def lose_life(world: Any, rules: Any) -> None:
-    """Take a life and the powers; with the next one the round goes on, its bricks as they are."""
+def lose_life(world: WorldRecord, rules: RulesRecord) -> None:
+    """Take a life and the power; with another life the round goes on with the bricks left."""
     world.lives -= 1
     world.lives_lost += 1
     if world.lives > 0:

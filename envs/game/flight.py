@@ -1,7 +1,6 @@
 """A ball's flight through one tick: from impact to impact, each at its exact time."""
 
 import math
-from typing import Any
 
 from ...physics.kernels import inlined, inner
 from ...physics.pairs.approach import approach_between
@@ -17,25 +16,16 @@ from ..rules import (
     MAX_BALLS,
     PADDLE_Y,
 )
-from ..state import FLYING
+from ..state import FLYING, RulesRecord, WorldRecord
 from .ball import bounce_ball, count_hit, deflect_ball
 from .boss import hit_boss, meet_boss
 from .bricks import hit_brick
 from .enemies import destroy_enemy, meet_enemies
 from .serve import catch_ball
-from .shapes import BALL_SHAPE
+from .shapes import BALL_SHAPE, BOSS, BRICK, CEILING, ENEMY, NOTHING, PADDLE, WALL
 
-# What a ball meets.
-NOTHING = 0
-WALL = 1
-CEILING = 2
-BRICK = 3
-PADDLE = 4
-ENEMY = 5
-BOSS = 6
-
-# Freeing a ball squeezed between paddle and wall moves it up or down along the paddle's slanted
-# end, each time by half the rest: after so many times nothing is left of any overlap.
+# A ball squeezed between paddle and wall moves up or down along the paddle's slanted end. Each round
+# halves the overlap that is left: after so many nothing is left of any overlap.
 FREEING_ROUNDS = 64
 
 
@@ -54,7 +44,7 @@ def _meet_side_wall(x: float, vx: float, duration: float) -> tuple[float, float]
 
 @inlined
 def _meet_paddle(
-    world: Any, rules: Any, ball: int, paddle_x: float, duration: float
+    world: WorldRecord, rules: RulesRecord, ball: int, paddle_x: float, duration: float
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y) of a ball's impact on the moving paddle; inf if none."""
     return approach_between(
@@ -72,12 +62,12 @@ def _meet_paddle(
 
 @inner
 def _first_impact(
-    world: Any, rules: Any, ball: int, duration: float, paddle_counts: bool
+    world: WorldRecord, rules: RulesRecord, ball: int, duration: float, paddle_counts: bool
 ) -> tuple[float, float, float, int, int]:
     """Return (time, normal_x, normal_y, what, index) of what a ball meets first.
 
-    The normal points from what is met to the ball; time is inf and what `NOTHING` if it is free.
-    The index is that of the brick's cell, or of the enemy.
+    The normal points from what is met to the ball. If nothing is met, the time is inf and what is
+    `NOTHING`. The index is the brick's cell, or the enemy.
 
     Args:
         duration: the rest of the tick; paddle_counts: whether the ball can meet the paddle.
@@ -122,15 +112,15 @@ def _first_impact(
 
 
 @inlined
-def fly_balls(world: Any, rules: Any) -> None:
-    """Move the flying balls by one tick; nothing moves any more once the round is cleared."""
+def fly_balls(world: WorldRecord, rules: RulesRecord) -> None:
+    """Move the flying balls by one tick; once the round is cleared, nothing moves."""
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == FLYING and world.cleared == 0:
             fly_ball(world, rules, ball)
 
 
 @inner
-def fly_ball(world: Any, rules: Any, ball: int) -> None:
+def fly_ball(world: WorldRecord, rules: RulesRecord, ball: int) -> None:
     """Move a flying ball by one tick, through all that it meets."""
     remaining = 1.0
     paddle_counts = True
@@ -159,8 +149,8 @@ def fly_ball(world: Any, rules: Any, ball: int) -> None:
 
 
 @inlined
-def _strike(world: Any, rules: Any, what: int, index: int) -> bool:
-    """Do to what a ball has met (not the paddle) what that does; return whether it is damage."""
+def _strike(world: WorldRecord, rules: RulesRecord, what: int, index: int) -> bool:
+    """Apply a ball's hit on anything but the paddle; return whether it has done damage."""
     if what == BRICK:
         count_hit(world)
         return hit_brick(world, rules, index)
@@ -175,16 +165,16 @@ def _strike(world: Any, rules: Any, what: int, index: int) -> bool:
 
 
 @inlined
-def free_balls(world: Any, rules: Any) -> None:
-    """Relax the flying balls that the paddle was moved into."""
+def free_balls(world: WorldRecord, rules: RulesRecord) -> None:
+    """Push the flying balls out of the paddle, where it has moved into them."""
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == FLYING:
             free_ball(world, rules, ball)
 
 
 @inlined
-def free_ball(world: Any, rules: Any, ball: int) -> None:
-    """Relax a ball that overlaps the paddle, for the paddle was moved into it."""
+def free_ball(world: WorldRecord, rules: RulesRecord, ball: int) -> None:
+    """Push a ball out of the paddle, where it has moved into the ball."""
     for _ in range(FREEING_ROUNDS):
         x, y = world.ball_x[ball] - world.paddle_x, world.ball_y[ball] - PADDLE_Y
         if not may_touch(rules.shapes, world.paddle_shape, BALL_SHAPE, x, y, 0.0, 0.0, 0.0):
@@ -196,7 +186,7 @@ def free_ball(world: Any, rules: Any, ball: int) -> None:
             return
         world.ball_x[ball] += normal_x * depth
         world.ball_y[ball] += normal_y * depth
-        # The wall is the stronger one.
+        # Whatever the paddle does, the ball stays between the walls.
         if world.ball_x[ball] < BALL_RADIUS:
             world.ball_x[ball] = BALL_RADIUS
         elif world.ball_x[ball] > FIELD_WIDTH - BALL_RADIUS:

@@ -1,6 +1,4 @@
-"""What the capsules bring."""
-
-from typing import Any
+"""What capsules do when they are caught."""
 
 from ...physics.kernels import inlined, inner
 from ..rules import (
@@ -15,8 +13,8 @@ from ..rules import (
     SLOW_STAGES,
     SPEED_STAGE_MIN,
 )
-from ..state import ABSENT, FLYING, HELD
-from .ball import direction, set_course
+from ..state import ABSENT, FLYING, HELD, RulesRecord, WorldRecord
+from .ball import heading, set_course
 from .paddle import keep_paddle_inside
 from .scoring import gain_lives
 from .serve import copy_ball, release_ball
@@ -24,8 +22,8 @@ from .shapes import LONG_PADDLE_SHAPE, PADDLE_SHAPE
 
 
 @inner
-def take_capsule(world: Any, rules: Any, kind: int) -> None:
-    """Give the player what a capsule brings."""
+def take_capsule(world: WorldRecord, rules: RulesRecord, kind: int) -> None:
+    """Apply the effect of a caught capsule."""
     if kind <= POWERS:
         set_power(world, rules, kind)
     elif kind == SLOW:
@@ -39,7 +37,7 @@ def take_capsule(world: Any, rules: Any, kind: int) -> None:
 
 
 @inner
-def set_power(world: Any, rules: Any, power: int) -> None:
+def set_power(world: WorldRecord, rules: RulesRecord, power: int) -> None:
     """Give the paddle a power (or `NO_POWER`) in place of the one that it has."""
     world.power = power
     if power == ENLARGE:
@@ -52,8 +50,8 @@ def set_power(world: Any, rules: Any, power: int) -> None:
 
 
 @inlined
-def _slow_balls(world: Any, rules: Any) -> None:
-    """Take two from the speed stage, at once."""
+def _slow_balls(world: WorldRecord, rules: RulesRecord) -> None:
+    """Lower the speed stage by two, at once."""
     world.speed_stage = max(SPEED_STAGE_MIN, world.speed_stage - SLOW_STAGES)
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == FLYING:
@@ -61,14 +59,14 @@ def _slow_balls(world: Any, rules: Any) -> None:
 
 
 @inlined
-def _disrupt_ball(world: Any, rules: Any) -> None:
-    """Make three balls of one; one that lies on the paddle is served first."""
+def _disrupt_ball(world: WorldRecord, rules: RulesRecord) -> None:
+    """Split the only ball into three; a ball that lies on the paddle is served first."""
     source = 0
     while world.ball_state[source] == ABSENT:
         source += 1
     if world.ball_state[source] == HELD:
         release_ball(world, rules, source)
-    sine, cosine = direction(rules, DISRUPT_ANGLE)
+    sine, cosine = heading(rules, DISRUPT_ANGLE)
     x, y = world.ball_vx[source], world.ball_vy[source]
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == ABSENT:

@@ -5,11 +5,10 @@ so that it gives the same bits compiled and interpreted, and results depend on n
 size, nor threads, nor the point of a restore.
 """
 
-from typing import Any
-
 import numpy as np
 
 from ...physics.kernels import inner, kernel
+from ..state import WorldRecord
 
 _A = np.uint64(13)
 _B = np.uint64(7)
@@ -27,7 +26,7 @@ def seed_state(seed: int) -> int:
 
 
 @kernel
-def uniform(world: Any) -> float:
+def uniform(world: WorldRecord) -> float:
     """Draw a float64 in [0, 1)."""
     state = world.random
     state ^= state << _A
@@ -38,12 +37,12 @@ def uniform(world: Any) -> float:
 
 
 @inner
-def uniform_between(world: Any, low: float, high: float) -> float:
+def uniform_between(world: WorldRecord, low: float, high: float) -> float:
     """Draw a float64 in [low, high)."""
     return low + (high - low) * uniform(world)
 
 
 @inner
-def random_sign(world: Any) -> float:
+def random_sign(world: WorldRecord) -> float:
     """Draw -1.0 or 1.0."""
     return 1.0 if uniform(world) < 0.5 else -1.0

@@ -1,11 +1,12 @@
-"""The record that carries the rules, as a user has tuned them, and the shapes to the kernels."""
+"""The record from which kernels read the shapes, and the rules as the user has tuned them."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...physics.kernels.layouts import record_dtype
 from ...physics.pairs.lattice import Lattice
 from ...physics.shapes.records import Edge, Shape
 from ..rules import (
@@ -24,6 +25,7 @@ from ..rules import (
     ROWS,
     UNBREAKABLE,
 )
+from ..state import SharedRules
 from .shapes import game_shapes
 
 if TYPE_CHECKING:
@@ -32,41 +34,38 @@ if TYPE_CHECKING:
 
 _SHAPES, _EDGES = game_shapes(1.0)
 
-Rules = np.dtype(
-    (
-        np.record,
-        [
-            ("shapes", Shape, _SHAPES.shape),
-            ("edges", Edge, _EDGES.shape),
-            ("lattice", Lattice, (1,)),  # of the bricks
-            # Directions by whole degrees from the vertical, for no sine is taken while stepping.
-            ("sine", np.float64, (92,)),
-            ("cosine", np.float64, (92,)),
-            ("circle_sine", np.float64),  # of the angle by which a circling enemy turns in a tick
-            ("circle_cosine", np.float64),
-            ("brick_values", np.float32, (256,)),  # that observations show for each hits left
-            ("ball_speed", np.float64),  # at speed stage 0, per tick
-            ("paddle_speed", np.float64),  # per tick
-            ("paddle_half", np.float64),
-            ("long_paddle_half", np.float64),
-            ("frame_skip", np.int64),
-            ("sticky_action", np.float64),
-            ("auto_fire", np.int64),  # 1: there is no fire button, the laser shoots by itself
-            ("deflection", np.int64),
-            ("reward", np.int64),
-            ("life_penalty", np.float64),
-            ("lives", np.int64),
-            ("max_decisions", np.int64),
-            ("capsule_rate", np.float64),  # 0: there are none
-            ("enemies", np.int64),  # 0: neither enemies nor boss
-            ("first_seed", np.int64),  # of the generated rounds
-            ("num_seeds", np.float64),
-            ("table_counts", np.int64),  # 1: the levels of the table are played
-            ("endless", np.int64),  # 1: after the table's levels come generated ones; 0: again
-            ("difficulty", np.float64),  # of generated rounds; negative: it rises
-            ("first_difficulty", np.float64),  # from here
-        ],
-    )
+Rules = record_dtype(
+    [
+        ("shapes", Shape, _SHAPES.shape),
+        ("edges", Edge, _EDGES.shape),
+        ("lattice", Lattice, (1,)),  # of the bricks
+        # Directions by whole degrees from the vertical: kernels compute no sines.
+        ("sine", np.float64, (92,)),
+        ("cosine", np.float64, (92,)),
+        ("circle_sine", np.float64),  # of the angle by which a circling enemy turns in a tick
+        ("circle_cosine", np.float64),
+        ("brick_values", np.float32, (256,)),  # that observations show for each hits left
+        ("ball_speed", np.float64),  # at speed stage 0, per tick
+        ("paddle_speed", np.float64),  # per tick
+        ("paddle_half", np.float64),
+        ("long_paddle_half", np.float64),
+        ("frame_skip", np.int64),
+        ("sticky_action", np.float64),
+        ("auto_fire", np.int64),  # 1: there is no fire button, the laser shoots by itself
+        ("deflection", np.int64),
+        ("reward", np.int64),
+        ("life_penalty", np.float64),
+        ("lives", np.int64),
+        ("max_decisions", np.int64),
+        ("capsule_rate", np.float64),  # 0: there are none
+        ("enemies", np.int64),  # 0: neither enemies nor boss
+        ("first_seed", np.int64),  # of the generated rounds
+        ("num_seeds", np.float64),
+        ("table_counts", np.int64),  # 1: the levels of the table are played
+        ("endless", np.int64),  # 1: after the table's levels come generated ones; 0: again
+        ("difficulty", np.float64),  # of generated rounds; negative: it rises
+        ("first_difficulty", np.float64),  # from here
+    ]
 )
 
 
@@ -77,8 +76,8 @@ def brick_values() -> NDArray[np.float32]:
     return values
 
 
-def make_rules(config: "Config", plan: "LevelPlan") -> Any:
-    """Return the one-element array of `Rules` that a validated configuration stands for."""
+def make_rules(config: "Config", plan: "LevelPlan") -> SharedRules:
+    """Return the rules of a validated configuration, `Rules` [1]."""
     rules = np.zeros(1, Rules)
     record = rules[0]
     shapes, edges = game_shapes(config.paddle)

@@ -1,21 +1,20 @@
 """Points and lives."""
 
-from typing import Any
-
 from ...physics.kernels import inner
 from ..rules import EXTRA_LIFE_EVERY
+from ..state import WorldRecord
 
 
 @inner
-def gain_lives(world: Any, lives: int) -> None:
+def gain_lives(world: WorldRecord, lives: int) -> None:
     """Add lives."""
     world.lives += lives
     world.lives_gained += lives
 
 
 @inner
-def add_score(world: Any, points: int) -> None:
-    """Add points, and a life for each threshold that they pass."""
+def add_score(world: WorldRecord, points: int) -> None:
+    """Add points, and a life for each threshold that the score passes."""
     world.score += points
     if world.score >= world.next_life:
         # No loop: LLVM turns one into a division of 128 bits, which Numba cannot link.
@@ -25,7 +24,7 @@ def add_score(world: Any, points: int) -> None:
 
 
 @inner
-def count_damage(world: Any) -> None:
+def count_damage(world: WorldRecord) -> None:
     """Count one of the hits that clear the round."""
     world.hits_left -= 1
     world.idle = 0

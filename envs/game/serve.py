@@ -1,6 +1,4 @@
-"""Balls that lie on the paddle: to be served, or caught by it, and how they leave it."""
-
-from typing import Any
+"""Balls that lie on the paddle, to be served or caught by it, and how they leave it."""
 
 from ...physics.kernels import inlined, inner, kernel
 from ..rules import (
@@ -12,13 +10,13 @@ from ..rules import (
     SERVE_ANGLE_MIN,
     SERVE_TICKS,
 )
-from ..state import ABSENT, FLYING, HELD
-from .ball import deflection, direction, set_course
+from ..state import ABSENT, FLYING, HELD, RulesRecord, WorldRecord
+from .ball import deflection, heading, set_course
 from .random import random_sign, uniform_between
 
 
 @inner
-def balls_in_play(world: Any) -> int:
+def balls_in_play(world: WorldRecord) -> int:
     """Return how many balls there are."""
     count = 0
     for ball in range(MAX_BALLS):
@@ -27,8 +25,8 @@ def balls_in_play(world: Any) -> int:
 
 
 @inner
-def remove_ball(world: Any, ball: int) -> None:
-    """Take a ball away."""
+def remove_ball(world: WorldRecord, ball: int) -> None:
+    """Remove a ball."""
     world.ball_state[ball] = ABSENT
     world.ball_x[ball] = 0.0
     world.ball_y[ball] = 0.0
@@ -41,7 +39,7 @@ def remove_ball(world: Any, ball: int) -> None:
 
 
 @inner
-def copy_ball(world: Any, source: int, ball: int) -> None:
+def copy_ball(world: WorldRecord, source: int, ball: int) -> None:
     """Make a flying ball where another one flies."""
     remove_ball(world, ball)
     world.ball_state[ball] = FLYING
@@ -50,8 +48,8 @@ def copy_ball(world: Any, source: int, ball: int) -> None:
 
 
 @inner
-def lay_ball(world: Any) -> None:
-    """Lay one ball on the paddle's middle, and take every other ball away."""
+def lay_ball(world: WorldRecord) -> None:
+    """Lay one ball on the paddle's middle, and remove all others."""
     for ball in range(MAX_BALLS):
         remove_ball(world, ball)
     world.ball_state[0] = HELD
@@ -62,14 +60,14 @@ def lay_ball(world: Any) -> None:
 
 
 @inlined
-def catch_ball(world: Any, ball: int, paddle_x: float) -> None:
+def catch_ball(world: WorldRecord, ball: int, paddle_x: float) -> None:
     """Let a ball that has landed on the paddle (its middle at paddle_x) stick there."""
     offset = world.ball_x[ball] - paddle_x
     remove_ball(world, ball)
     world.ball_state[ball] = HELD
     world.ball_release[ball] = CATCH_TICKS
     world.ball_caught[ball] = 1
-    # No further out than that it stays in the field when the paddle is at the wall.
+    # Not so far out that the ball leaves the field when the paddle is at the wall.
     furthest = world.paddle_half - BALL_RADIUS
     world.ball_offset[ball] = max(-furthest, min(furthest, offset))
     world.ball_x[ball] = paddle_x + world.ball_offset[ball]
@@ -77,7 +75,7 @@ def catch_ball(world: Any, ball: int, paddle_x: float) -> None:
 
 
 @kernel
-def carry_balls(world: Any) -> None:
+def carry_balls(world: WorldRecord) -> None:
     """Keep held balls where they lie on the paddle."""
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == HELD:
@@ -86,8 +84,8 @@ def carry_balls(world: Any) -> None:
 
 
 @inlined
-def release_balls(world: Any, rules: Any) -> None:
-    """Let the held balls go on fire, or when they have lain long enough."""
+def release_balls(world: WorldRecord, rules: RulesRecord) -> None:
+    """Release the held balls if the player fires, or if they have lain long enough."""
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == HELD:
             world.ball_release[ball] -= 1
@@ -96,12 +94,12 @@ def release_balls(world: Any, rules: Any) -> None:
 
 
 @inner
-def release_ball(world: Any, rules: Any, ball: int) -> None:
-    """Serve a held ball, or send a caught one off by where it lies."""
+def release_ball(world: WorldRecord, rules: RulesRecord, ball: int) -> None:
+    """Serve a held ball; if it was caught, its place on the paddle gives its direction."""
     if world.ball_caught[ball] == 1:
         x, y = deflection(world, rules, world.ball_offset[ball], random_sign(world))
     else:
-        x, y = direction(rules, uniform_between(world, SERVE_ANGLE_MIN, SERVE_ANGLE_MAX))
+        x, y = heading(rules, uniform_between(world, SERVE_ANGLE_MIN, SERVE_ANGLE_MAX))
         x *= random_sign(world)
     world.ball_state[ball] = FLYING
     world.ball_release[ball] = 0

@@ -1,4 +1,4 @@
-"""The colliders of the game, and their places in the one table of shapes."""
+"""The colliders of the game, their places in the one table of shapes, and names for what is met."""
 
 import math
 from typing import Any
@@ -37,6 +37,15 @@ CEILING_SHAPE = 8  # lies at (0, FIELD_HEIGHT)
 BOSS_SHAPE = 9
 SHARD_SHAPE = 10
 ENEMY_SHAPE = 11  # and the following, one for each kind
+
+# What a ball or a beam meets.
+NOTHING = 0
+WALL = 1
+CEILING = 2
+BRICK = 3
+PADDLE = 4
+ENEMY = 5
+BOSS = 6
 
 
 def paddle_collider(width: float) -> Convex:

@@ -1,7 +1,5 @@
 """The game: a decision, and a tick as a list of phases."""
 
-from typing import Any
-
 from ...physics.kernels import inlined, kernel
 from ..rules import (
     IDLE_TICKS,
@@ -10,7 +8,16 @@ from ..rules import (
     PROGRESS,
     SCORE,
 )
-from ..state import DECISION_LIMIT, FLYING, IDLE, NOT_TRUNCATED
+from ..state import (
+    DECISION_LIMIT,
+    FLYING,
+    IDLE,
+    NOT_TRUNCATED,
+    Levels,
+    OutcomeRecord,
+    RulesRecord,
+    WorldRecord,
+)
 from .beams import fly_beams, shoot
 from .boss import fly_shards, throw_shards
 from .capsules import fall_capsule
@@ -23,8 +30,15 @@ from .serve import balls_in_play, carry_balls, release_balls, remove_ball
 
 
 @inlined
-def decide(world: Any, rules: Any, levels: Any, move: float, fire: float, outcome: Any) -> None:
-    """Play one decision of `frame_skip` ticks, fewer if the episode ends, into the outcome.
+def play_decision(
+    world: WorldRecord,
+    rules: RulesRecord,
+    levels: Levels,
+    move: float,
+    fire: float,
+    outcome: OutcomeRecord,
+) -> None:
+    """Play one decision, `frame_skip` ticks or fewer if the episode ends; write its outcome.
 
     Args:
         move: velocity command in [-1, 1], as a part of the paddle's speed; fire: 1.0 or 0.0.
@@ -50,8 +64,8 @@ def decide(world: Any, rules: Any, levels: Any, move: float, fire: float, outcom
 
 
 @kernel
-def clear_events(world: Any) -> None:
-    """Forget what happened in the decision before."""
+def clear_events(world: WorldRecord) -> None:
+    """Forget what happened in the previous decision."""
     world.bricks_broken = 0
     world.capsules_caught = 0
     world.enemies_destroyed = 0
@@ -61,8 +75,10 @@ def clear_events(world: Any) -> None:
 
 
 @inlined
-def _reward_tick(world: Any, rules: Any, levels: Any, outcome: Any) -> None:
-    """Play one tick, and add what it pays to the outcome."""
+def _reward_tick(
+    world: WorldRecord, rules: RulesRecord, levels: Levels, outcome: OutcomeRecord
+) -> None:
+    """Play one tick, and add its reward to the outcome."""
     score, lost, hits = world.score, world.lives_lost, world.hits_left
     _tick(world, rules)
     hits -= world.hits_left
@@ -85,7 +101,7 @@ def _reward_tick(world: Any, rules: Any, levels: Any, outcome: Any) -> None:
 
 
 @inlined
-def _tick(world: Any, rules: Any) -> None:
+def _tick(world: WorldRecord, rules: RulesRecord) -> None:
     """Play one tick of 1/60 s; it ends early when the round is cleared."""
     world.idle += 1
     steer_paddle(world, rules)
@@ -112,8 +128,8 @@ def _tick(world: Any, rules: Any) -> None:
 
 
 @inlined
-def _act_enemies(world: Any, rules: Any) -> None:
-    """Let enemies come in and choose their ways; where the boss is, he alone acts."""
+def _act_enemies(world: WorldRecord, rules: RulesRecord) -> None:
+    """Let enemies come in and choose their ways; in a round with the boss, let the boss act."""
     if world.boss_hits > 0:
         throw_shards(world)
     elif rules.enemies == 1:
@@ -123,8 +139,8 @@ def _act_enemies(world: Any, rules: Any) -> None:
 
 
 @inlined
-def _lose_balls(world: Any) -> bool:
-    """Take away the balls below the field; return whether the last one is lost."""
+def _lose_balls(world: WorldRecord) -> bool:
+    """Remove the balls below the field; return whether the last one is lost."""
     lost = 0
     for ball in range(MAX_BALLS):
         if world.ball_state[ball] == FLYING and world.ball_y[ball] < 0.0:

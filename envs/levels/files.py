@@ -1,47 +1,32 @@
-"""Rounds: from text files, one character a brick, or from the generator.
+"""Level files: text, with one character per brick.
 
-A file begins with a name and its author's comment:
+A file begins with headings:
 
     name: Ripple
     comment: Waves that run through each other.
 
-    ...wocg....      eleven characters a row, at most eighteen rows, the top one first
+    ...wocg....      eleven characters per row, at most eighteen rows, the top row first
 
-``.`` is no brick; ``w o c g r b m y`` are coloured ones of 50 to 120 points; ``S`` is silver (it
-needs several hits) and ``X`` gold (it never breaks). Missing rows at the bottom are empty. A level
-that cannot be cleared is refused. ``boss: yes`` among the headings brings the boss.
+``.`` is an empty cell; ``w o c g r b m y`` are coloured bricks of 50 to 120 points; ``S`` is silver
+(it needs several hits) and ``X`` gold (it never breaks). Missing rows at the bottom are empty. The
+heading ``boss: yes`` brings the boss. A level that nobody can clear is refused.
 """
 
 from dataclasses import dataclass
 from difflib import get_close_matches
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_integer, check_number
-from ..rules import BRICK_LETTERS, CELLS, COLUMNS, EMPTY, GOLD, ROWS
-from . import named as packaged
+from ..rules import BRICK_LETTERS, COLUMNS, EMPTY, GOLD, ROWS
 from .clearability import unreachable_bricks
-from .generator import (
-    MAX_DENSITY,
-    MAX_GOLD,
-    MAX_ROWS,
-    MAX_SEED,
-    MAX_SILVER,
-    MIN_DENSITY,
-    MIN_ROWS,
-    SYMMETRIES,
-    Recipe,
-    lay_level,
-    plan_level,
-)
-from .motifs import MOTIFS
 
-# The named rounds in the order of the campaign, the boss's last.
-CAMPAIGN = (
+_PACKAGED = f"{__package__}.named"
+
+# The named levels in the order in which the campaign plays them; the boss is in the last one.
+CAMPAIGN: tuple[str, ...] = (
     "ripple",
     "archway",
     "honeycomb",
@@ -59,14 +44,14 @@ CAMPAIGN = (
 
 
 @dataclass(frozen=True)
-class Round:
-    """A level.
+class Level:
+    """Where the bricks of a level lie.
 
     Attributes:
-        name: what players call it.
-        comment: its author's.
-        kinds: uint8 [18, 11], its bricks by their kinds, the top row first.
-        boss: whether the boss is in it, who must be beaten.
+        name: the name that players see.
+        comment: the author's comment.
+        kinds: uint8 [18, 11], the kind of brick in each cell, the top row first.
+        boss: whether the boss is there and must be beaten.
     """
 
     name: str
@@ -75,42 +60,37 @@ class Round:
     boss: bool = False
 
 
-def named_rounds() -> list[str]:
-    """Return the names by which the packaged levels can be asked for."""
-    files = resources.files(packaged).iterdir()
+def level_names() -> list[str]:
+    """Return the names of the packaged levels."""
+    files = resources.files(_PACKAGED).iterdir()
     return sorted(file.name[:-4] for file in files if file.name.endswith(".txt"))
 
 
-def campaign_rounds() -> list[Round]:
-    """Return the twelve named rounds in their order, and after them the boss's."""
-    return [load_round(name) for name in CAMPAIGN]
-
-
-def load_round(name_or_path: str) -> Round:
+def load_level(name_or_path: str) -> Level:
     """Read a packaged level by its name, or a level file by its path.
 
     Raises:
-        ValueError: there is no such level, or the file is malformed, or the level cannot be
-            cleared; the message names the file, the line and what is wrong there.
+        ValueError: there is no such level, the file is malformed, or the level cannot be cleared;
+            the message names the file, the line and the mistake.
     """
-    if name_or_path in named_rounds():
-        text = (resources.files(packaged) / f"{name_or_path}.txt").read_text("utf-8")
-        return parse_round(text, f"{name_or_path}.txt")
+    if name_or_path in level_names():
+        text = (resources.files(_PACKAGED) / f"{name_or_path}.txt").read_text("utf-8")
+        return parse_level(text, f"{name_or_path}.txt")
     path = Path(name_or_path)
     if not path.is_file():
-        near = get_close_matches(name_or_path, named_rounds(), 1)
+        near = get_close_matches(name_or_path, level_names(), 1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         raise ValueError(
-            f"no level {name_or_path!r}: it is neither a file nor one of the packaged rounds "
-            f"({', '.join(named_rounds())}).{hint}"
+            f"no level {name_or_path!r}: it is neither a file nor one of the packaged levels "
+            f"({', '.join(level_names())}).{hint}"
         )
     try:
-        return parse_round(path.read_text("utf-8"), name_or_path)
+        return parse_level(path.read_text("utf-8"), name_or_path)
     except UnicodeDecodeError as error:
-        raise ValueError(f"{name_or_path}: no text in UTF-8: {error}") from None
+        raise ValueError(f"{name_or_path}: the file is not UTF-8 text: {error}") from None
 
 
-def parse_round(text: str, source: str) -> Round:
+def parse_level(text: str, source: str) -> Level:
     """Parse a level file's text; ``source`` names it in errors (ValueError)."""
     header = {"name": Path(source).stem, "comment": "", "boss": "no"}
     rows: list[list[int]] = []
@@ -136,11 +116,11 @@ def parse_round(text: str, source: str) -> Round:
     if not boss and not ((kinds != EMPTY) & (kinds != GOLD)).any():
         raise ValueError(f"{source}: there is no breakable brick, so the level can't be cleared")
     _check_clearable(kinds, source, first_line)
-    return Round(header["name"], header["comment"], kinds, boss)
+    return Level(header["name"], header["comment"], kinds, boss)
 
 
 def _check_clearable(kinds: NDArray[np.uint8], source: str, first_line: int) -> None:
-    """Refuse bricks that no ball can reach; ``first_line`` is that of the first row."""
+    """Refuse bricks that no ball can reach; ``first_line`` is the line of the first row."""
     barred = unreachable_bricks(kinds)
     if not barred:
         return
@@ -164,74 +144,3 @@ def _parse_row(line: str, where: str) -> list[int]:
                 f"{where}, column {column}: {letter!r} is no brick; known are {BRICK_LETTERS!r}"
             )
     return [BRICK_LETTERS.index(letter) for letter in line]
-
-
-def generate_round(
-    seed: int,
-    motif: str | None = None,
-    rows: int | None = None,
-    density: float | None = None,
-    symmetry: str | None = None,
-    silver: float | None = None,
-    gold: float | None = None,
-    difficulty: float = 0.5,
-) -> Round:
-    """Return the generated level of a seed; what is None is as seed and difficulty decide.
-
-    With a seed and a difficulty only, it is the level that games play.
-
-    Args:
-        seed: from 0 to 2^63 - 1. Agents train on `TRAIN_SEEDS`; the seeds that they are tested on
-            begin at `FIRST_TEST_SEED`.
-        motif: ``"wave"``, ``"rings"``, ``"islands"``, ``"stripes"`` or ``"noise"``.
-        rows: of the lattice that the bricks lie in, 4 to 12.
-        density: the part of those rows' cells that hold bricks, 0.35 to 0.9.
-        symmetry: ``"none"``, ``"mirror"`` (left and right), ``"turn"`` (by half a turn) or
-            ``"both"`` (left and right, up and down).
-        silver: the part of the bricks that are silver at the most, 0 to 0.3.
-        gold: the part of the bricks that are gold at the most, 0 to 0.15; there is less where it
-            would bar the way to a brick.
-        difficulty: from 0 to 1.
-
-    Raises:
-        ValueError: a value is out of range or unknown; the message says which and what is legal.
-        TypeError: a value is of the wrong type.
-    """
-    check_integer("seed", seed, 0, MAX_SEED)
-    check_number("difficulty", difficulty, 0.0, 1.0)
-    changes: dict[str, Any] = {}
-    if motif is not None:
-        check_choice("motif", motif, tuple(MOTIFS))
-        changes["motif"] = MOTIFS[motif]
-    if rows is not None:
-        check_integer("rows", rows, MIN_ROWS, MAX_ROWS)
-        changes["rows"] = int(rows)
-    if density is not None:
-        check_number("density", density, MIN_DENSITY, MAX_DENSITY)
-        changes["density"] = float(density)
-    if symmetry is not None:
-        check_choice("symmetry", symmetry, tuple(SYMMETRIES))
-        changes["symmetry"] = SYMMETRIES[symmetry]
-    if silver is not None:
-        check_number("silver", silver, 0.0, MAX_SILVER)
-        changes["silver"] = float(silver)
-    if gold is not None:
-        check_number("gold", gold, 0.0, MAX_GOLD)
-        changes["gold"] = float(gold)
-    recipe = plan_level(int(seed), float(difficulty))._replace(**changes)
-    kinds = np.zeros(CELLS, np.uint8)
-    lay_level(kinds, int(seed), recipe)
-    return Round(
-        f"{list(MOTIFS)[recipe.motif].capitalize()} {seed}",
-        _describe(recipe),
-        kinds.reshape(ROWS, COLUMNS),
-    )
-
-
-def _describe(recipe: Recipe) -> str:
-    """Return the comment of a generated level: what it was made to."""
-    symmetry = list(SYMMETRIES)[recipe.symmetry]
-    return (
-        f"Generated: {recipe.rows} rows, density {recipe.density:.2f}, symmetry {symmetry}, "
-        f"silver {recipe.silver:.2f}, gold {recipe.gold:.2f}."
-    )

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..rules import DIFFICULTY_AFTER_CAMPAIGN
-from ..state import Level
-from .files import CAMPAIGN, load_round
+from ..state import LevelEntry
+from .files import CAMPAIGN, load_level
 from .generator import FIRST_TEST_SEED, MAX_SEED, TRAIN_SEEDS
 
 if TYPE_CHECKING:
@@ -24,12 +24,12 @@ class LevelPlan:
     """The levels of a batch.
 
     Attributes:
-        names: of the levels that are played first, in order, for finding one of them.
-        table: those levels, `Level` records [n]; never empty, but without names it is not played.
-        seeds: of the generated levels.
-        endless: whether generated levels follow when the table is through; it is played again
-            otherwise.
-        first_difficulty: of the first generated level, where difficulty rises.
+        names: the names of the levels that are played first, in order.
+        table: those levels, `LevelEntry` records [n]. If there are no names, it has one entry that
+            is never played.
+        seeds: the seeds of the generated levels.
+        endless: True: generated levels follow the table; False: the table is played again.
+        first_difficulty: the difficulty of the first generated level, where difficulty rises.
     """
 
     names: tuple[str, ...]
@@ -47,10 +47,10 @@ def plan_levels(config: "Config") -> LevelPlan:
     """
     seeds = seed_range(config.levels)
     if seeds is not None:
-        return LevelPlan((), np.zeros(1, Level), seeds, True, 0.0)
+        return LevelPlan((), np.zeros(1, LevelEntry), seeds, True, 0.0)
     if config.levels == "campaign":
-        rounds = CAMPAIGN if config.enemies else CAMPAIGN[:-1]  # without enemies there is no boss
-        return LevelPlan(rounds, level_table(rounds), TRAIN_SEEDS, True, DIFFICULTY_AFTER_CAMPAIGN)
+        names = campaign_names(config)
+        return LevelPlan(names, level_table(names), TRAIN_SEEDS, True, DIFFICULTY_AFTER_CAMPAIGN)
     names = (config.levels,) if isinstance(config.levels, str) else tuple(map(str, config.levels))
     table = level_table(names)
     for name in names:
@@ -58,17 +58,22 @@ def plan_levels(config: "Config") -> LevelPlan:
     return LevelPlan(names, table, TRAIN_SEEDS, False, 0.0)
 
 
+def campaign_names(config: "Config") -> tuple[str, ...]:
+    """Return the named levels of the campaign, in order; without enemies there is no boss."""
+    return CAMPAIGN if config.enemies else CAMPAIGN[:-1]
+
+
 def check_boss(config: "Config", name: str) -> None:
-    """Refuse a level with the boss where there are no enemies, with a ValueError."""
-    if load_round(name).boss and not config.enemies:
+    """Raise a ValueError if a level has the boss but the game has no enemies."""
+    if load_level(name).boss and not config.enemies:
         raise ValueError(f"level {name!r} has the boss, who can't come with enemies=False")
 
 
 def seed_range(levels: str | range | Sequence[str]) -> range | None:
-    """Return the seeds that `levels` names; None if it names levels.
+    """Return the seeds that `levels` asks for; None if it asks for levels by name.
 
     Raises:
-        ValueError: the range is empty, or has a step, or there are no such seeds.
+        ValueError: the range is empty, has a step, or goes beyond the legal seeds.
     """
     if isinstance(levels, str):
         if levels in ("train", "test"):
@@ -90,10 +95,10 @@ def seed_range(levels: str | range | Sequence[str]) -> range | None:
 
 
 def level_table(names: Sequence[str]) -> Any:
-    """Return levels, by their names or paths, as an array of `Level` records."""
-    table = np.zeros(len(names), Level)
+    """Return levels, given by names or paths, as `LevelEntry` records [n]."""
+    table = np.zeros(len(names), LevelEntry)
     for record, name in zip(table, names, strict=True):
-        level = load_round(name)
+        level = load_level(name)
         record["kind"] = level.kinds.ravel()
         record["boss"] = level.boss
     return table

@@ -1,9 +1,4 @@
-"""How episodes begin, as `reset(options=...)` says: the hook for curricula.
-
-``level`` is the name or path of a level, or a round's number; ``seed`` generates the first round;
-``difficulty`` is that of all generated rounds. They stay in force, for the episodes that begin by
-themselves too, until a reset says otherwise; None returns to the configuration.
-"""
+"""How episodes begin: the options of `reset`, on which curricula are built."""
 
 from typing import Any
 
@@ -16,12 +11,17 @@ from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED
 from .generator import MAX_SEED
 from .plan import LevelPlan, check_boss, level_table
 
-START_OPTIONS = ("level", "difficulty", "seed")
+# The options of `reset`, and what each means.
+START_OPTIONS = {
+    "level": "the first level: its name, the path of its file, or the number of a round",
+    "seed": "the first level: the one that the generator makes of this seed",
+    "difficulty": "the difficulty of all generated levels, in [0, 1]",
+}
 MAX_ROUND = 10**9
 
 
 def forget_starts(worlds: Any) -> None:
-    """Let episodes begin as the configuration says."""
+    """Let the episodes of all worlds begin as the configuration says."""
     worlds["start"] = AS_CONFIGURED
     worlds["start_round"] = 1
     worlds["start_difficulty"] = -1.0
@@ -34,10 +34,10 @@ def choose_starts(
     config: Config,
     plan: LevelPlan,
 ) -> None:
-    """Note in the worlds of a mask (bool [n]) how their episodes shall begin.
+    """Set how the episodes of the worlds in a mask (bool [n]) begin from now on.
 
     Raises:
-        TypeError, ValueError: an option's value is illegal; nothing is changed then.
+        TypeError, ValueError: an option has an illegal value; then nothing changes.
     """
     level, seed = options.get("level"), options.get("seed")
     if level is not None and seed is not None:
@@ -75,7 +75,7 @@ def _choose_first_round(
             worlds["start_kind"][mask] = record["kind"]
             worlds["start_boss"][mask] = record["boss"]
     elif level is not None:
-        check_integer("options['level'], if not a name,", level, 1, MAX_ROUND)
+        check_integer("options['level'], if it is no name,", level, 1, MAX_ROUND)
         number = level
     worlds["start"][mask] = start
     worlds["start_round"][mask] = number

@@ -1,10 +1,28 @@
-"""Named parts of an observation."""
+"""The named parts of an observation: each part's name, length and meaning are data."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
 
 
-def slices(sizes: dict[str, int], start: int) -> dict[str, slice]:
-    """Return a slice for each name, of its size, one after the other from a start on."""
-    layout = {}
-    for name, size in sizes.items():
-        layout[name] = slice(start, start + size)
-        start += size
+class Part(NamedTuple):
+    """A part of an observation.
+
+    Attributes:
+        name: the key of its slice in `layout`.
+        length: how many numbers, or planes, it has.
+        meaning: what they mean, for the documentation.
+    """
+
+    name: str
+    length: int
+    meaning: str
+
+
+def slices(parts: Sequence[Part]) -> dict[str, slice]:
+    """Return the slice of each part on an observation's first axis, one after the other."""
+    layout: dict[str, slice] = {}
+    start = 0
+    for part in parts:
+        layout[part.name] = slice(start, start + part.length)
+        start += part.length
     return layout

@@ -2,10 +2,10 @@
 
 Channels come first, as a network of convolutions takes them: red, green and blue, or the brightness
 alone. Each is, bit for bit, a channel of the picture that `render` gives for the same size. In a
-stack the latest picture is the last; the first one of an episode fills all of it.
+stack the latest picture is the last; the first picture of an episode fills all places.
 
-A stack is a window that slides over a longer row of pictures, one place a step, so that nothing is
-moved until it has come to the row's end.
+A stack is a window that slides over a longer row of pictures, by one place per step, so that pictures
+are moved only when it has reached the row's end.
 """
 
 from copy import copy
@@ -20,18 +20,18 @@ from ...physics.kernels import kernel
 from ..config import Config
 from ..draw.canvas import Drawn, copy_bytes
 from ..draw.frame import draw_frame
-from ..draw.scenery import Scenery, scenery
+from ..draw.scenery import Scenery, make_scenery
+from ..state import SharedRules, Worlds, copy_records
 from .protocol import Mask, Observe
 
-# How many stacks a row is long: the longer, the more seldom its end is reached, and the more memory
-# the pictures take.
+# The length of a row in stacks. A longer row reaches its end less often, and takes more memory.
 STACKS_PER_ROW = 2
 
 
 @kernel
 def draw_pictures(
-    worlds: Any,
-    rules: Any,
+    worlds: Worlds,
+    rules: SharedRules,
     mask: Any,
     sheets: Any,
     pictures: Any,
@@ -50,7 +50,7 @@ def draw_pictures(
         pictures: uint8 [n, places, channels, height, width, 1]; lines: the same bytes, without the
             last axis; drawn: `Drawn` records [n, places, channels].
         first, newest: the places of the stack's pictures.
-        moved: how many places back the stack has been moved in this step, 0 if it has gone on.
+        moved: how many places the stack was moved back in this step; 0 if it was not.
     """
     for index in range(worlds.shape[0]):
         if not mask[index]:
@@ -84,7 +84,7 @@ class PixelObserver:
     """`Observer` of pictures, uint8 [n, stack * channels, height, width]."""
 
     def __init__(self, config: Config, num_worlds: int) -> None:
-        """Make the arrays, and draw what all pictures share."""
+        """Make the arrays, and draw what is the same in all pictures."""
         height, width = config.picture_size
         self._sheets = channel_sheets(height, width, config.grey)
         self._stack = config.stack
@@ -117,13 +117,11 @@ class PixelObserver:
         """Return one that shows the same in arrays of its own."""
         clone = copy(self)
         clone._row = self._row.copy()
-        # NumPy's own copy of records goes field by field.
-        clone._drawn = np.frombuffer(bytearray(self._drawn.tobytes()), Drawn)
-        clone._drawn = clone._drawn.reshape(self._drawn.shape)
+        clone._drawn = copy_records(self._drawn)
         clone._place(self._newest)
         return clone
 
-    def part(self, worlds: Any, rules: Any, share: slice) -> Observe:
+    def part(self, worlds: Worlds, rules: SharedRules, share: slice) -> Observe:
         """Return what observes a share of the worlds."""
         lines, drawn = self._row[share], self._drawn[share]
         always = worlds[share], rules
@@ -150,8 +148,8 @@ class PixelObserver:
 def channel_sheets(height: int, width: int, grey: bool) -> tuple[Scenery, ...]:
     """Return the `Scenery` of each channel of pictures, as of pictures in one colour."""
     if grey:
-        return (scenery(height, width, 1),)
-    shared = scenery(height, width, 3)
+        return (make_scenery(height, width, 1),)
+    shared = make_scenery(height, width, 3)
     arrays = shared.palette, shared.background, shared.looks
     return tuple(
         Scenery(shared.views, *(_channel(array, index) for array in arrays)) for index in range(3)

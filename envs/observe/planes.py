@@ -3,11 +3,10 @@
 A cell is as large as a brick, 1 by 1/2. Row 0 lies under the ceiling, the lattice of bricks is rows
 2 to 19, and the paddle is in row 24.
 
-What moves is not rounded to a cell: its weight of 1 is shared among the four cells whose middles
-lie around it, the more to the nearer ones, and so it is seen where between them it is. Its motion
-is its velocity, shared likewise: no earlier observation is needed. Where things share a cell their
-numbers are added, within -1 and 1. They are floats because velocities have a sign, and because a
-network takes them as they are. Games without capsules and enemies have no planes for them.
+The place of a moving thing is not rounded to a cell: its weight of 1 is shared among the four cells
+whose middles surround it; the nearer the cell, the larger its share. Its motion is its velocity,
+shared in the same way, so that one observation is enough. Where things share a cell, their numbers
+are added and clipped to [-1, 1]. Games without capsules and enemies have the core parts only.
 """
 
 from copy import copy
@@ -18,7 +17,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from ...physics.kernels import inlined, kernel
+from ...physics.kernels import inlined, inner, kernel
 from ..config import Config
 from ..game.shapes import BOSS_SHAPE
 from ..rules import (
@@ -50,55 +49,64 @@ from ..rules import (
     SPEED_STAGE_MAX,
     UNBREAKABLE,
 )
-from ..state import ABSENT, HELD
-from .layout import slices
+from ..state import ABSENT, HELD, RulesRecord, SharedRules, WorldRecord, Worlds
+from .layout import Part, slices
 from .protocol import Observe
+from .shown import (
+    ALL_BRICKS,
+    ShownRow,
+    bricks_to_write,
+    changed_cell,
+    forget_shown,
+    nothing_shown,
+)
 
 GRID_ROWS = int(FIELD_HEIGHT / BRICK_HEIGHT)
 PLANE = GRID_ROWS * COLUMNS  # numbers
 _PADDLE_ROW = int((FIELD_HEIGHT - PADDLE_TOP) / BRICK_HEIGHT)
 _LATTICE = int((FIELD_HEIGHT - LATTICE_TOP) / BRICK_HEIGHT) * COLUMNS  # its first cell in a plane
 
-_CORE = slices(
-    {
-        "brick": 1,  # 1: one that can be broken
-        "hits_left": 1,  # of it / 8, at most 1
-        "gold": 1,
-        "status": 1,  # row by row the numbers of `STATUS`, each in all of its row
-        "paddle": 1,  # the covered part of the cell's width
-        "paddle_motion": 1,  # to the right; 1: its speed
-        "ball": 1,
-        "ball_motion": 2,  # to the right, up; 1: the fastest stage's speed
-        "ball_held": 1,  # that lies on the paddle: 0, when it leaves by itself, to 1
-    },
-    0,
+# A motion is 1 at the speed that is named.
+CORE_PARTS = (
+    Part("brick", 1, "1: a brick that can be broken"),
+    Part("hits_left", 1, "its hits left / 8, at most 1"),
+    Part("gold", 1, "1: a brick of gold"),
+    Part("status", 1, "one number per row, in all cells of the row: see `STATUS`"),
+    Part("paddle", 1, "the fraction of the cell's width that the paddle covers"),
+    Part("paddle_motion", 1, "velocity to the right (full speed)"),
+    Part("ball", 1, "balls"),
+    Part("ball_motion", 2, "velocity to the right and up (the highest speed stage)"),
+    Part("ball_held", 1, "ticks until a held ball leaves by itself / 120"),
 )
+EXTRA_PARTS = (
+    Part("capsule", 1, "the falling capsule"),
+    Part("beam", 1, "beams"),
+    Part("exit", 1, "the gate in the right wall, if it is open"),
+    Part("gate", 1, "a gate in the ceiling through which an enemy is about to come"),
+    Part("enemy", 1, "enemies"),
+    Part("enemy_motion", 2, "velocity to the right and up (a dive)"),
+    Part(
+        "boss",
+        1,
+        "the fraction of the cell in the boss's bounding box × the hits it still takes / 16",
+    ),
+    Part("shard", 1, "shards"),
+    Part("shard_motion", 2, "velocity to the right and up (full speed)"),
+)
+_CORE = slices(CORE_PARTS)
+_FULL = slices(CORE_PARTS + EXTRA_PARTS)
 CORE_PLANES = _CORE["ball_held"].stop
-_EXTRAS = slices(
-    {
-        "capsule": 1,
-        "beam": 1,
-        "exit": 1,  # the gate in the right wall, if it is open
-        "gate": 1,  # in the ceiling: an enemy is about to come in
-        "enemy": 1,
-        "enemy_motion": 2,  # 1: the speed of a dive
-        "boss": 1,  # the covered part of the cell (by its bounding box) * hits it still takes / 16
-        "shard": 1,
-        "shard_motion": 2,  # 1: its speed
-    },
-    CORE_PLANES,
-)
-FULL_PLANES = _EXTRAS["shard_motion"].stop
+FULL_PLANES = _FULL["shard_motion"].stop
 
 _STATUS = (
     *("speed_stage", "idle_clock", "decision_clock", "lives"),
-    # Only in games with capsules or enemies: the power that one has, the capsule that falls, ...
+    # Only in games with capsules or enemies: the present power, the falling capsule, and waits.
     *("catch", "enlarge", "laser"),
     *("capsule_catch", "capsule_enlarge", "capsule_laser", "capsule_slow", "capsule_disrupt"),
     *("capsule_break", "capsule_player"),
     *("beam_wait", "enemy_wait", "shard_wait"),
 )
-# The row of each number in the plane `status`. They are scaled as in the `vector` observation.
+# The row of each number in the plane `status`. Each is scaled as in the `vector` observation.
 STATUS = {name: row for row, name in enumerate(_STATUS)}
 
 _BRICK = _CORE["brick"].start * PLANE
@@ -110,15 +118,15 @@ _PADDLE_MOTION = _CORE["paddle_motion"].start * PLANE
 _BALL = _CORE["ball"].start * PLANE
 _BALL_MOTION = _CORE["ball_motion"].start * PLANE
 _BALL_HELD = _CORE["ball_held"].start * PLANE
-_CAPSULE = _EXTRAS["capsule"].start * PLANE
-_BEAM = _EXTRAS["beam"].start * PLANE
-_EXIT = _EXTRAS["exit"].start * PLANE
-_GATE = _EXTRAS["gate"].start * PLANE
-_ENEMY = _EXTRAS["enemy"].start * PLANE
-_ENEMY_MOTION = _EXTRAS["enemy_motion"].start * PLANE
-_BOSS = _EXTRAS["boss"].start * PLANE
-_SHARD = _EXTRAS["shard"].start * PLANE
-_SHARD_MOTION = _EXTRAS["shard_motion"].start * PLANE
+_CAPSULE = _FULL["capsule"].start * PLANE
+_BEAM = _FULL["beam"].start * PLANE
+_EXIT = _FULL["exit"].start * PLANE
+_GATE = _FULL["gate"].start * PLANE
+_ENEMY = _FULL["enemy"].start * PLANE
+_ENEMY_MOTION = _FULL["enemy_motion"].start * PLANE
+_BOSS = _FULL["boss"].start * PLANE
+_SHARD = _FULL["shard"].start * PLANE
+_SHARD_MOTION = _FULL["shard_motion"].start * PLANE
 
 # The planes of what moves begin here. Nearly all of their cells are empty: those that are not are
 # remembered, and erased before the next observation. There are never more than these: a paddle in
@@ -135,20 +143,22 @@ class GridObserver:
         """Make the arrays; games without capsules and enemies have no planes for them."""
         full = config.capsules or config.enemies
         shape = (FULL_PLANES if full else CORE_PLANES, GRID_ROWS, COLUMNS)
-        self.layout = _CORE | _EXTRAS if full else dict(_CORE)
+        self.layout = dict(_FULL if full else _CORE)
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, shape, np.float32)
         self.observations: NDArray[np.float32] = np.zeros((num_worlds, *shape), np.float32)
         self._rows = self.observations.reshape(num_worlds, -1)
         self._marks = np.zeros((num_worlds, 1 + MAX_MARKS), np.int32)
+        self._shown = nothing_shown(num_worlds)
 
     def advance(self) -> None:
         """Do nothing: a grid shows the present only."""
 
     def recall(self, observations: NDArray[Any]) -> None:
-        """Go on from these grids; the worlds know what of the bricks is up to date."""
+        """Go on from these grids."""
         self.observations[:] = observations
         find_marks(self._rows, self._marks)
+        forget_shown(self._shown)
 
     def clone(self) -> "GridObserver":
         """Return one that shows the same in arrays of its own."""
@@ -156,24 +166,30 @@ class GridObserver:
         clone.observations = self.observations.copy()
         clone._rows = clone.observations.reshape(self._rows.shape)
         clone._marks = self._marks.copy()
+        clone._shown = self._shown.copy()
         return clone
 
-    def part(self, worlds: Any, rules: Any, share: slice) -> Observe:
+    def part(self, worlds: Worlds, rules: SharedRules, share: slice) -> Observe:
         """Return what observes a share of the worlds."""
-        return partial(observe_grids, worlds[share], rules, self._rows[share], self._marks[share])
+        rows, marks, shown = self._rows[share], self._marks[share], self._shown[share]
+        return partial(observe_grids, worlds[share], rules, rows, marks, shown)
 
 
 @kernel
-def observe_grids(worlds: Any, rules: Any, rows: Any, marks: Any, mask: Any) -> None:
+def observe_grids(
+    worlds: Worlds, rules: SharedRules, rows: Any, marks: Any, shown: Any, mask: Any
+) -> None:
     """Observe the worlds of a mask.
 
     Args:
         rows: float32 [n, planes * PLANE].
         marks: int32 [n, 1 + MAX_MARKS], the number of places to be erased, and these.
+        shown: int64 [n, 3], what the rows show.
+        mask: bool [n].
     """
     for index in range(worlds.shape[0]):
         if mask[index]:
-            observe_grid(worlds[index], rules[0], rows[index], marks[index])
+            _observe_grid(worlds[index], rules[0], rows[index], marks[index], shown[index])
 
 
 @kernel
@@ -186,15 +202,20 @@ def find_marks(rows: Any, marks: Any) -> None:
                 _put(rows[index], marks[index], place, 0.0)
 
 
-@kernel
-def observe_grid(world: Any, rules: Any, row: Any, marks: Any) -> None:
-    """Write a world's observation into a float32 row; the bricks only if they have changed."""
+@inlined
+def _observe_grid(
+    world: WorldRecord, rules: RulesRecord, row: Any, marks: Any, shown: ShownRow
+) -> None:
+    """Write a world's observation into its row; the bricks only if they have changed."""
     for index in range(marks[0]):
         row[marks[1 + index]] = 0.0
     marks[0] = 0
-    if world.lattice_changed == 1:
-        world.lattice_changed = 0
-        _write_bricks(world, rules, row)
+    count = bricks_to_write(world, shown)
+    if count == ALL_BRICKS:
+        for cell in range(CELLS):
+            _write_brick(world, rules, row, cell)
+    for change in range(count):
+        _write_brick(world, rules, row, changed_cell(world, change))
     full = row.shape[0] > CORE_PLANES * PLANE
     _write_status(world, rules, row, full)
     _mark_paddle(world, rules, row, marks)
@@ -206,20 +227,19 @@ def observe_grid(world: Any, rules: Any, row: Any, marks: Any) -> None:
             _mark_boss(world, rules, row, marks)
 
 
-@inlined
-def _write_bricks(world: Any, rules: Any, row: Any) -> None:
-    """Write the planes of the bricks."""
-    for cell in range(CELLS):
-        hits = world.brick_hits[cell]
-        place = _LATTICE + cell
-        breaks = hits > 0 and hits != UNBREAKABLE
-        row[_BRICK + place] = 1.0 if breaks else 0.0
-        row[_HITS_LEFT + place] = rules.brick_values[hits] if breaks else 0.0
-        row[_GOLD + place] = 1.0 if hits == UNBREAKABLE else 0.0
+@inner
+def _write_brick(world: WorldRecord, rules: RulesRecord, row: Any, cell: int) -> None:
+    """Write what the planes of the bricks show in a cell."""
+    hits = world.brick_hits[cell]
+    place = _LATTICE + cell
+    breaks = hits > 0 and hits != UNBREAKABLE
+    row[_BRICK + place] = 1.0 if breaks else 0.0
+    row[_HITS_LEFT + place] = rules.brick_values[hits] if breaks else 0.0
+    row[_GOLD + place] = 1.0 if hits == UNBREAKABLE else 0.0
 
 
 @inlined
-def _write_status(world: Any, rules: Any, row: Any, full: bool) -> None:
+def _write_status(world: WorldRecord, rules: RulesRecord, row: Any, full: bool) -> None:
     """Write the numbers that have no place in the field."""
     _write_number(row, 0, world.speed_stage * (1.0 / SPEED_STAGE_MAX))
     _write_number(row, 1, min(1.0, world.idle * (1.0 / IDLE_TICKS)))
@@ -250,7 +270,7 @@ def _write_number(row: Any, number: int, value: float) -> None:
 
 
 @inlined
-def _mark_paddle(world: Any, rules: Any, row: Any, marks: Any) -> None:
+def _mark_paddle(world: WorldRecord, rules: RulesRecord, row: Any, marks: Any) -> None:
     """Mark the paddle and its motion, by the part of each cell's width that it covers."""
     left, right = world.paddle_x - world.paddle_half, world.paddle_x + world.paddle_half
     speed = world.paddle_vx / rules.paddle_speed
@@ -262,7 +282,7 @@ def _mark_paddle(world: Any, rules: Any, row: Any, marks: Any) -> None:
 
 
 @inlined
-def _mark_balls(world: Any, rules: Any, row: Any, marks: Any) -> None:
+def _mark_balls(world: WorldRecord, rules: RulesRecord, row: Any, marks: Any) -> None:
     """Mark the balls, their motion, and how long they are held."""
     fastest = rules.ball_speed * (1.0 + 0.25 * SPEED_STAGE_MAX)
     for ball in range(MAX_BALLS):
@@ -278,7 +298,7 @@ def _mark_balls(world: Any, rules: Any, row: Any, marks: Any) -> None:
 
 
 @inlined
-def _mark_capsules(world: Any, row: Any, marks: Any) -> None:
+def _mark_capsules(world: WorldRecord, row: Any, marks: Any) -> None:
     """Mark the falling capsule, the beams, and the open gate in the right wall."""
     if world.capsule != NO_CAPSULE:
         _share(row, marks, _CAPSULE, world.capsule_x, world.capsule_y, 1.0)
@@ -291,7 +311,7 @@ def _mark_capsules(world: Any, row: Any, marks: Any) -> None:
 
 
 @inlined
-def _mark_enemies(world: Any, row: Any, marks: Any) -> None:
+def _mark_enemies(world: WorldRecord, row: Any, marks: Any) -> None:
     """Mark enemies and shards, their motions, and the gate that opens."""
     if world.boss_hits == 0 and 0 < world.enemy_wait < GATE_TICKS:
         _share(row, marks, _GATE, GATE_X[world.enemy_gate], FIELD_HEIGHT, 1.0)
@@ -314,7 +334,7 @@ def _mark_enemies(world: Any, row: Any, marks: Any) -> None:
 
 
 @inlined
-def _mark_boss(world: Any, rules: Any, row: Any, marks: Any) -> None:
+def _mark_boss(world: WorldRecord, rules: RulesRecord, row: Any, marks: Any) -> None:
     """Mark the boss by the part of each cell that it covers, and by the hits that it takes."""
     shape = rules.shapes[BOSS_SHAPE]
     left, right = BOSS_X + shape.lower_x, BOSS_X + shape.upper_x

@@ -1,4 +1,4 @@
-"""What turns the worlds of a batch into observations: one class for each kind of observation."""
+"""What an observer has to offer: it turns the worlds of a batch into observations."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -8,6 +8,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from ..config import Config
+from ..state import SharedRules, Worlds
 
 Mask = NDArray[np.bool_]
 Observe = Callable[[Mask], Any]
@@ -30,20 +31,27 @@ class Observer(Protocol):
         """Make the arrays for a configuration and a number of worlds."""
 
     def advance(self) -> None:
-        """Begin a new step: what is observed next follows what was observed before."""
+        """Begin a new step: the next observations follow the present ones."""
 
     def recall(self, observations: NDArray[Any]) -> None:
-        """Go on from these as the latest observations, [n, ...], or [1, ...] for all worlds."""
+        """Take these as the latest observations, [n, ...], or [1, ...] for all worlds.
+
+        To be called when anything but the game has written the worlds: what was known of the
+        observations is forgotten.
+        """
 
     def clone(self) -> "Observer":
-        """Return one that shows the same in arrays of its own, and shares what never changes."""
+        """Return one that shows the same, in arrays of its own. What never changes is shared."""
         ...
 
-    def part(self, worlds: Any, rules: Any, share: slice) -> Observe:
-        """Return what observes a share of the worlds: those of a mask, bool [worlds in it].
+    def part(self, worlds: Worlds, rules: SharedRules, share: slice) -> Observe:
+        """Return a function that observes the worlds of a mask, bool [n], among those of a share.
+
+        It only reads the worlds.
 
         Args:
-            worlds: `World` records, all of the batch.
-            rules: `Rules` [1].
+            worlds: all of the batch.
+            rules: of the batch.
+            share: which worlds.
         """
         ...

@@ -1,4 +1,4 @@
-"""Playing by hand in a window, and looking at recorded games."""
+"""Playing by hand in a window, and watching recorded games."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,35 +8,35 @@ import numpy as np
 from ..batch.batch import Batch
 from ..batch.replays import Replay
 from ..config import Config
-from ..levels.files import CAMPAIGN
+from ..levels import CAMPAIGN
 from ..rules import TICKS_PER_SECOND
-from .gallery import DIFFICULTY, chosen_seed
+from .gallery import DIFFICULTY, parse_seed
 from .show import run_show, screen_height
 from .sitting import Sitting
 from .viewer import Viewer
 
 TITLE = "Arkanoid"
-# A player by hand decides in each tick, and has all the time in the world.
+# A human player decides in each tick, and no number of decisions ends the game.
 BY_HAND: dict[str, Any] = {"actions": "box", "frame_skip": 1, "max_decisions": 10**9}
 
 
 def hand_config(
     level: str | None = None, difficulty: float | None = None, **keywords: Any
 ) -> tuple[Config, dict[str, Any]]:
-    """Return the configuration of games by hand, and the reset options that they begin with.
+    """Return the configuration and the first reset options of games that are played by hand.
 
     Args:
-        level: the name of a named round, from which on the campaign is played; the path of a file,
-            which is played again and again; ``"seed:7"`` for a generated level, likewise; or what
-            else the keyword ``levels`` takes as text. None is the campaign from its beginning.
-        difficulty: of generated rounds; None: 0.5 for ``"seed:7"``, rising from round to round
-            otherwise.
-        keywords: of the environment, see `Config`.
+        level: the name of a named level: the campaign from there on; the path of a level file or
+            ``"seed:7"`` for a generated level: that level again and again; any other text that
+            the keyword ``levels`` takes; None: the campaign from its beginning.
+        difficulty: of generated levels; None: 0.5 for ``"seed:7"``, otherwise it rises from round
+            to round.
+        keywords: other keywords of the environment, see `Config`.
 
     Raises:
-        TypeError, ValueError: a value is illegal. That there is such a level is not checked.
+        TypeError, ValueError: a value is illegal. Whether the level exists is not checked.
     """
-    seed = None if level is None else chosen_seed(level)
+    seed = None if level is None else parse_seed(level)
     options: dict[str, Any] = {}
     if seed is not None:
         keywords["levels"] = f"seeds:{seed}-{seed}"
@@ -54,20 +54,21 @@ def play_by_hand(
     seed: int,
     keep: Callable[[Replay], None],
 ) -> bool:
-    """Open a window and let someone play, until it is closed; return whether it was interrupted.
+    """Open a window and let someone play until it is closed; return whether Ctrl-C ended it.
 
     Args:
-        config: of the games, see `hand_config`.
-        options: how they begin, as for `reset`.
-        seed: of their random numbers.
-        keep: is given each game that was begun, when it is over or left; also after Ctrl-C.
+        config: the configuration of the games, see `hand_config`.
+        options: how the games begin, as for `reset`.
+        seed: the seed of their random numbers.
+        keep: is called with each game that was begun, when the game is over or the player leaves
+            it; also after Ctrl-C.
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
         ValueError: there is no such level, or a value is illegal.
     """
     sitting = Sitting(config, options, seed, keep, screen_height())
-    # Whatever must be compiled is compiled now, and not while somebody waits for the ball.
+    # All kernels are compiled now, and not while somebody plays.
     _rehearse(config, options)
     sitting.picture()
     try:
@@ -77,15 +78,15 @@ def play_by_hand(
 
 
 def view_replay(replay: Replay, speed: float = 1.0) -> bool:
-    """Show a recorded game in a window; return whether it was interrupted.
+    """Show a recorded game in a window; return whether Ctrl-C ended it.
 
     Args:
         replay: the game.
-        speed: how many times as fast as it was played.
+        speed: a factor on the speed at which it was played.
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
-        ReplayDivergedError: the game took another course when it was recorded.
+        ReplayDivergedError: the game differs from the recording.
     """
     viewer = Viewer(replay, speed, screen_height())
     return run_show(viewer, TITLE, viewer.frames_per_second)

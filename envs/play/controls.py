@@ -1,4 +1,4 @@
-"""Keys and the mouse: what they mean, and what they command. No window is needed for it."""
+"""Keys and the mouse: what they mean, and what they command. This needs no window."""
 
 import itertools
 from enum import Enum, auto
@@ -23,7 +23,7 @@ class Key(Enum):
     QUIT = auto()
 
 
-# SDL's codes, which are pygame's: a letter's is that of its character, the arrows' are their own.
+# SDL's key codes, which pygame uses: letters have the codes of their characters, arrows their own.
 RIGHT_ARROW = 0x4000004F
 LEFT_ARROW = 0x40000050
 ESCAPE = 27
@@ -40,24 +40,24 @@ KEYS = {
     ESCAPE: Key.QUIT,
 }
 
-# The mouse's velocities are whole parts of this of the paddle's speed: with few different commands
-# a replay stays small, and the paddle is still placed to within 1 / 300 of a brick's width.
+# The mouse's velocities are multiples of 1 / STEPS of the paddle's speed. Few different commands
+# keep a replay small, and the paddle still stops within 1 / 300 of a brick width of the mouse.
 STEPS = 32
 
 
 class Controls:
-    """What the player holds and points at, and what that commands.
+    """The state of keys and mouse, and what it commands.
 
-    Of keys and mouse the one that was moved last moves the paddle.
+    The paddle follows whichever was used last, the keys or the mouse.
     """
 
     def __init__(self) -> None:
         self._held: set[Key] = set()
-        self._tapped = False  # fire, since the latest command: no tap is too short
+        self._tapped = False  # fire was pressed since the latest command: no tap is too short
         self._target: float | None = None
 
     def press(self, key: Key) -> None:
-        """Note that a key goes down."""
+        """Note that a key is pressed."""
         self._held.add(key)
         if key is Key.FIRE:
             self._tapped = True
@@ -65,15 +65,15 @@ class Controls:
             self._target = None
 
     def release(self, key: Key) -> None:
-        """Note that a key goes up."""
+        """Note that a key is released."""
         self._held.discard(key)
 
     def point(self, x: float) -> None:
-        """Note where the mouse points: x in the field, in brick widths; the walls count too."""
+        """Note where the mouse points: x in the field, in brick widths; it may be outside."""
         self._target = x
 
     def let_go(self) -> None:
-        """Forget all that is held and pointed at."""
+        """Forget all keys and the mouse."""
         self._held.clear()
         self._tapped = False
         self._target = None
@@ -82,8 +82,8 @@ class Controls:
         """Return the velocity in [-1, 1] and fire (0 or 1) of the next tick.
 
         Args:
-            paddle_x: where the paddle is.
-            paddle_speed: how far it comes in a tick.
+            paddle_x: the paddle's x.
+            paddle_speed: how far it can move per tick.
         """
         fire = self._tapped or Key.FIRE in self._held
         self._tapped = False
@@ -94,12 +94,12 @@ class Controls:
 
 
 def move_of(held: set[Key]) -> int:
-    """Return the direction of the keys that are held: -1, 0 or 1."""
+    """Return where the held keys move the paddle: -1 left, 0 nowhere, 1 right."""
     return (Key.RIGHT in held) - (Key.LEFT in held)
 
 
 def keys_to_action(config: Config) -> dict[tuple[int, ...], Any]:
-    """Return the action of each combination of keys, by their codes, for `gymnasium.utils.play`."""
+    """Return the action of each combination of key codes, for `gymnasium.utils.play`."""
     moving = [code for code, key in KEYS.items() if key in (Key.LEFT, Key.RIGHT, Key.FIRE)]
     actions: dict[tuple[int, ...], Any] = {}
     for count in range(1, len(moving) + 1):
@@ -110,7 +110,7 @@ def keys_to_action(config: Config) -> dict[tuple[int, ...], Any]:
 
 
 def _action(config: Config, move: int, fire: bool) -> Any:
-    """Return the action that moves and fires; without a fire button none fires."""
+    """Return the action that moves and fires; some action spaces cannot fire."""
     table = COMMANDS.get(config.actions)
     if table is None:
         return np.array([move, fire], np.float32)

@@ -1,4 +1,4 @@
-"""A show in a window: pictures at the right speed, keys and the mouse. All that knows pygame."""
+"""Runs a show in a window: pictures at the right speed, keys and the mouse."""
 
 import signal
 import threading
@@ -14,13 +14,13 @@ from .controls import KEYS, Key
 from .window import SCREEN_PART, Window, import_pygame
 
 LEFT_BUTTON = 1
-# Pictures are a whole multiple of this high, so that each brick is as high as any other.
+# The height of pictures is a multiple of this, so that all bricks have the same height.
 HEIGHT_STEP = int(2 * FULL_HEIGHT)
-MAX_HEIGHT = 1440  # larger pictures take longer to scale than to draw; the window enlarges these
+MAX_HEIGHT = 1440  # on larger screens the window enlarges the pictures, which is faster
 
 
 class Show(Protocol):
-    """What is shown, and reacts to keys and the mouse.
+    """Something that makes pictures and reacts to keys and the mouse.
 
     Attributes:
         ended: whether the show is over.
@@ -29,27 +29,27 @@ class Show(Protocol):
     ended: bool
 
     def press(self, key: Key) -> None:
-        """Take notice of a key that goes down."""
+        """React to a key that is pressed."""
 
     def release(self, key: Key) -> None:
-        """Take notice of a key that goes up."""
+        """React to a key that is released."""
 
     def point(self, x: float) -> None:
-        """Take notice of where the mouse points: x in the field, in brick widths."""
+        """React to the mouse: it points at x in the field, in brick widths."""
 
-    def leave(self) -> None:
-        """Take notice of that another window has the keys now."""
+    def lose_focus(self) -> None:
+        """React to another window that takes the keys."""
 
     def tick(self) -> None:
         """Go on by one picture."""
 
     def picture(self) -> NDArray[np.uint8]:
-        """Return what is to be seen now, uint8 [height, width, 3]."""
+        """Return the present picture, uint8 [height, width, 3]."""
         ...
 
 
 def screen_height() -> int:
-    """Return the height of pictures that fill the screen, in pixels, but for bars and menus.
+    """Return the height in pixels of pictures that fill the screen, except bars and menus.
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
@@ -62,15 +62,15 @@ def screen_height() -> int:
 
 
 def run_show(show: Show, title: str, frames_per_second: float) -> bool:
-    """Run a show until it ends or its window is closed; return whether it was interrupted.
+    """Run a show until it ends or its window is closed; return whether a signal ended it.
 
-    Ctrl-C, and being told to terminate, end it between two pictures, so that nothing is lost.
+    Ctrl-C (SIGINT) and SIGTERM end it between two pictures, so that nothing is lost.
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
     """
     window = Window(title, frames_per_second)
-    with _interruption() as interrupted:
+    with _catch_signals() as interrupted:
         try:
             while not show.ended and not interrupted.is_set():
                 picture = show.picture()
@@ -85,7 +85,7 @@ def run_show(show: Show, title: str, frames_per_second: float) -> bool:
 
 
 def _react(show: Show, window: Window, picture: NDArray[np.uint8], event: Any) -> None:
-    """Tell the show what an event of pygame means, or the window what concerns it alone."""
+    """Pass an event of pygame on to the show, or to the window if only the window needs it."""
     pygame = import_pygame()
     if event.type in (pygame.KEYDOWN, pygame.KEYUP) and event.key in KEYS:
         key = KEYS[event.key]
@@ -102,21 +102,21 @@ def _react(show: Show, window: Window, picture: NDArray[np.uint8], event: Any) -
     elif event.type == pygame.MOUSEBUTTONUP and event.button == LEFT_BUTTON:
         show.release(Key.FIRE)
     elif event.type == pygame.WINDOWFOCUSLOST:
-        show.leave()
+        show.lose_focus()
 
 
 def _to_field(window: Window, picture: NDArray[np.uint8], position: tuple[int, int]) -> float:
-    """Return the x of the field, in brick widths, that is seen at a pixel of the window."""
+    """Return the x in the field, in brick widths, that a pixel of the window shows."""
     x, _ = window.to_picture(*position)
     view = make_view(picture.shape[0], picture.shape[1])[0]
     return float((x - view.left) / view.scale)
 
 
 @contextmanager
-def _interruption() -> Iterator[threading.Event]:
-    """Let Ctrl-C and SIGTERM set an event instead of raising an exception anywhere.
+def _catch_signals() -> Iterator[threading.Event]:
+    """Let Ctrl-C and SIGTERM set an event instead of raising an exception.
 
-    Other threads than the main one leave signals as they are.
+    Only the main thread can do so; other threads leave signals alone.
     """
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():

@@ -1,4 +1,4 @@
-"""A sitting: one game after the other, pauses and titles. No window is needed for it."""
+"""A sitting: one game after another, with pauses and titles. This needs no window."""
 
 import math
 from collections.abc import Callable
@@ -15,15 +15,15 @@ from ..checks import check_integer
 from ..config import Config
 from ..draw.overlay import draw_overlay
 from ..draw.picture import draw_world
-from ..levels.files import load_round
+from ..levels import load_level
 from ..levels.generator import MAX_SEED
 from ..rules import IDLE_TICKS, TICKS_PER_SECOND
 from .controls import Controls, Key
 
-# Whoever still holds or hammers the fire button when the last life is lost sees the score first.
+# So long the fire button does nothing after a game: whoever still hammers it sees the score first.
 OVER_TICKS = 40
-TITLE_TICKS = 90  # that the title of a new round is shown
-WARNING_TICKS = 15 * TICKS_PER_SECOND  # before a game is cut for want of a hit
+TITLE_TICKS = 90  # how long the title of a new round is shown
+WARNING_TICKS = 15 * TICKS_PER_SECOND  # the warning comes so long before the game is cut
 
 HELP = (
     "ARROWS OR MOUSE: MOVE   SPACE OR CLICK: FIRE",
@@ -31,31 +31,31 @@ HELP = (
     "F: FULL SCREEN   ESC: QUIT",
 )
 
-_EVERYWHERE = np.ones(1, np.bool_)
+_ALL_WORLDS = np.ones(1, np.bool_)
 
 
 class Phase(Enum):
-    """What a sitting is at."""
+    """The phase of a sitting."""
 
-    READY = auto()  # a game is laid out, and waits for its player
+    READY = auto()  # a game is laid out and waits for the player
     PLAYING = auto()
     PAUSED = auto()
     OVER = auto()
 
 
 class Sitting:
-    """Games of one player, each of them recorded.
+    """The games of one player, each of them recorded.
 
     Args:
-        config: of the games; a decision should be one tick.
-        options: how they begin, as for `reset`.
-        seed: of their random numbers.
-        keep: is given each game that was begun, when it is over or left.
-        height: of the pictures, in pixels.
+        config: the configuration of the games; a decision should be one tick.
+        options: how the games begin, as for `reset`.
+        seed: the seed of their random numbers.
+        keep: is called with each game that was begun, when it is over or the player leaves it.
+        height: the height of the pictures, in pixels.
 
     Attributes:
-        phase: what it is at.
-        ended: whether the player has asked to leave.
+        phase: the present phase.
+        ended: whether the player has asked to quit.
 
     Raises:
         ValueError: there is no such level, or an option is illegal.
@@ -78,9 +78,9 @@ class Sitting:
         self._batch = Batch(1, config)
         self._recorder = Recorder(self._batch, 0)
         self._batch.seed(0, seed)
-        self._waited = 0  # ticks in this phase
-        self._title = TITLE_TICKS  # ticks since a round began
-        levels = [load_round(name) for name in self._batch.plan.names]
+        self._phase_ticks = 0  # since this phase began
+        self._round_ticks = TITLE_TICKS  # since this round began
+        levels = [load_level(name) for name in self._batch.plan.names]
         self._names = {level.kinds.tobytes(): level.name for level in levels}
         self._lay_out(options)
 
@@ -90,7 +90,7 @@ class Sitting:
         return self._batch.worlds[0]
 
     def press(self, key: Key) -> None:
-        """Do what a key asks for that goes down."""
+        """React to a key that is pressed."""
         if key is Key.QUIT:
             self.ended = True
         elif key is Key.RESTART:
@@ -105,63 +105,63 @@ class Sitting:
             self._controls.press(key)
 
     def release(self, key: Key) -> None:
-        """Note that a key goes up."""
+        """React to a key that is released."""
         self._controls.release(key)
 
     def point(self, x: float) -> None:
-        """Note where the mouse points: x in the field, in brick widths."""
+        """React to the mouse: it points at x in the field, in brick widths."""
         self._controls.point(x)
 
-    def leave(self) -> None:
-        """Pause, for the player looks elsewhere."""
+    def lose_focus(self) -> None:
+        """Pause: the player looks elsewhere."""
         if self.phase is Phase.PLAYING:
             self._enter(Phase.PAUSED)
 
     def tick(self) -> None:
-        """Play a tick, if no pause is on."""
-        self._waited += 1
+        """Play a tick, unless the game is paused."""
+        self._phase_ticks += 1
         if self.phase is not Phase.PLAYING:
             return
         speed = float(self._batch.rules["paddle_speed"][0])
         self._batch.commands[0] = self._controls.command(float(self.world.paddle_x), speed)
         self._batch.step()
-        self._title = 0 if self.world.rounds_cleared else self._title + 1
+        self._round_ticks = 0 if self.world.rounds_cleared else self._round_ticks + 1
         if self.world.done:
             self._enter(Phase.OVER)
             self._keep(self._recorder.replay())
 
     def close(self) -> None:
-        """End the sitting; a game that is not over is kept as it is."""
+        """End the sitting; an unfinished game is kept."""
         self._keep_unfinished()
         self._recorder.stop()
         self._batch.close()
 
     def picture(self) -> NDArray[np.uint8]:
-        """Return what is to be seen now, uint8 [height, width, 3]."""
+        """Return the present picture, uint8 [height, width, 3]."""
         picture = draw_world(self._batch.worlds, self._batch.rules, 0, self._height)
         draw_overlay(picture, *self.text(), band=self.phase is not Phase.PLAYING)
         return picture
 
     def text(self) -> tuple[str, tuple[str, ...]]:
-        """Return the title and the lines that are shown over the picture, if any."""
+        """Return the title and the lines over the picture; both may be empty."""
         if self.phase is Phase.READY:
             return self._round_title(), (*self._round_lines(), "", "SPACE OR CLICK: START", *HELP)
         if self.phase is Phase.PAUSED:
             return "PAUSED", ("SPACE OR CLICK: GO ON", *HELP)
         if self.phase is Phase.OVER:
             return self._ending()
-        left = IDLE_TICKS - int(self.world.idle)
-        if left <= WARNING_TICKS:
-            return "", (f"HIT A BRICK WITHIN {math.ceil(left / TICKS_PER_SECOND)} S",)
-        if self._title < TITLE_TICKS:
+        remaining = IDLE_TICKS - int(self.world.idle)
+        if remaining <= WARNING_TICKS:
+            return "", (f"HIT A BRICK WITHIN {math.ceil(remaining / TICKS_PER_SECOND)} S",)
+        if self._round_ticks < TITLE_TICKS:
             return self._round_title(), self._round_lines()
         return "", ()
 
     def _lay_out(self, options: dict[str, Any]) -> None:
-        """Lay out a game, and keep the one that is left for it."""
+        """Lay out a new game, and keep the old one."""
         self._keep_unfinished()
-        self._batch.reset(_EVERYWHERE, options)
-        self._title = TITLE_TICKS
+        self._batch.reset(_ALL_WORLDS, options)
+        self._round_ticks = TITLE_TICKS
         self._enter(Phase.READY)
 
     def _keep_unfinished(self) -> None:
@@ -169,19 +169,19 @@ class Sitting:
             self._keep(self._recorder.replay())
 
     def _go_on(self) -> None:
-        """Start, go on after a pause, or begin another game."""
+        """Start the game, continue it, or lay out another one."""
         if self.phase is not Phase.OVER:
             self._enter(Phase.PLAYING)
-        elif self._waited >= OVER_TICKS:
+        elif self._phase_ticks >= OVER_TICKS:
             self._lay_out({})
 
     def _enter(self, phase: Phase) -> None:
         self.phase = phase
-        self._waited = 0
+        self._phase_ticks = 0
         self._controls.let_go()
 
     def _round_title(self) -> str:
-        """Return the name of the level, or the round's number if it has none."""
+        """Return the level's name; if it has none, the round's number."""
         return self._names.get(self.world.kind.tobytes(), f"Round {self.world.round_number}")
 
     def _round_lines(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""A recorded game to look at, with pauses. No window is needed for it."""
+"""Shows a recorded game, with pauses. This needs no window."""
 
 import math
 from collections.abc import Iterator
@@ -13,25 +13,25 @@ from ..draw.overlay import draw_overlay
 from ..draw.picture import draw_world
 from .controls import Key
 
-# More pictures a second than this are not shown: of a fast show some are left out.
+# The most pictures per second; a faster show leaves some out.
 MOST_PICTURES = 60
 
 
 class Viewer:
-    """Plays a recorded game again, and checks on the way that it is the same.
+    """Plays a recorded game again, and checks that it is the same game.
 
     Args:
         replay: the game.
-        speed: how many times as fast as it was played.
-        height: of the pictures, in pixels.
+        speed: a factor on the speed at which it was played.
+        height: the height of the pictures, in pixels.
 
     Attributes:
-        frames_per_second: pictures a second that give this speed.
-        paused: whether a pause is on.
-        ended: whether the user has asked to leave.
+        frames_per_second: how many pictures per second give this speed.
+        paused: whether the game is paused.
+        ended: whether the user has asked to quit.
 
     Raises:
-        ReplayDivergedError: here and in `tick`, the game took another course when it was recorded.
+        ReplayDivergedError: here and in `tick`: the game differs from the recording.
     """
 
     def __init__(self, replay: Replay, speed: float, height: int) -> None:
@@ -48,7 +48,7 @@ class Viewer:
         self._begin()
 
     def press(self, key: Key) -> None:
-        """Do what a key asks for: pause or go on, begin again, leave."""
+        """React to a key that is pressed: pause or continue, begin again, quit."""
         if key is Key.QUIT:
             self.ended = True
         elif key is Key.RESTART:
@@ -60,16 +60,16 @@ class Viewer:
                 self.paused = not self.paused
 
     def release(self, key: Key) -> None:
-        """Keys that go up mean nothing here."""
+        """Do nothing: released keys have no meaning here."""
 
     def point(self, x: float) -> None:
-        """The mouse's place means nothing here."""
+        """Do nothing: the mouse has no meaning here."""
 
-    def leave(self) -> None:
-        """The show goes on when nobody looks."""
+    def lose_focus(self) -> None:
+        """Do nothing: the show goes on."""
 
     def tick(self) -> None:
-        """Go on by one picture, if no pause is on."""
+        """Go on by one picture, unless the game is paused."""
         for _ in range(0 if self.paused or self._over else self._stride):
             state = next(self._states, None)
             if state is None:
@@ -78,13 +78,13 @@ class Viewer:
             self._batch = state
 
     def picture(self) -> NDArray[np.uint8]:
-        """Return what is to be seen now, uint8 [height, width, 3]."""
+        """Return the present picture, uint8 [height, width, 3]."""
         picture = draw_world(self._batch.worlds, self._batch.rules, 0, self._height)
         draw_overlay(picture, *self.text())
         return picture
 
     def text(self) -> tuple[str, tuple[str, ...]]:
-        """Return the title and the lines that are shown over the picture, if any."""
+        """Return the title and the lines over the picture; both may be empty."""
         if self._over:
             result = self._replay.result
             score = f"SCORE {result.score}   ROUND {result.round}"

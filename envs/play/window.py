@@ -9,25 +9,24 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
-# A new window takes this part of the screen's height at the most; the rest is for its frame, menus
+# A new window takes at most this fraction of the screen's height; the rest is for its frame, menus
 # and bars.
 SCREEN_PART = 0.9
-# A show that is later than this (seconds), because the program was stopped or busy, goes on from
-# there and does not rush after what it missed.
+# If a picture is later than this (seconds), because the program was stopped or busy, the following
+# ones do not catch up.
 PATIENCE = 0.1
 
 
 def import_pygame() -> Any:
-    """Import pygame-ce, quietly.
+    """Import pygame-ce without its greeting and warnings.
 
     Raises:
-        DependencyNotInstalled: it is missing, or the older pygame lies in its place.
+        DependencyNotInstalled: it is missing, or the older pygame is installed instead.
     """
-    # Its greeting is nothing that a user of this package asked for.
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         with warnings.catch_warnings():
-            # Some releases look for their resources in a deprecated way.
+            # Some releases use a deprecated function of the standard library.
             warnings.simplefilter("ignore")
             import pygame
     except ImportError as error:
@@ -43,17 +42,18 @@ def import_pygame() -> Any:
 
 
 class Window:
-    """A window for pictures; it opens with the first one and takes its size.
+    """A window for pictures; it opens with the first picture and takes its size.
 
-    The user may resize it (the pictures keep their proportions) and may close it: then the show is
-    over, `show` does nothing any more and returns False, and the program goes on.
+    The user may resize it (the pictures keep their proportions) and may close it: from then on
+    `show` does nothing and returns False, and the program goes on.
 
     Args:
-        title: of the window.
-        frames_per_second: at most so many pictures are shown a second; `show` waits accordingly.
+        title: the window's title.
+        frames_per_second: the most pictures per second; `show` waits accordingly.
 
     Attributes:
-        events: what else the user did, pygame's events that came with the latest picture.
+        events: pygame's events since the picture before the latest, except those that close a
+            window.
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
@@ -70,17 +70,17 @@ class Window:
         self._window: Any = None
         self._closed = False
         self._full_screen = False
-        # The picture in the window: left, top and factor.
-        self._place = (0.0, 0.0, 1.0)
+        # Where the picture lies in the window: left, top and factor of its size.
+        self._picture_place = (0.0, 0.0, 1.0)
         self.events: list[Any] = []
 
     @property
     def closed(self) -> bool:
-        """Whether the show is over."""
+        """Whether the window was closed."""
         return self._closed
 
     def show(self, frame: NDArray[np.uint8]) -> bool:
-        """Show a picture, uint8 [height, width, 3], when its time has come.
+        """Wait until it is time, and show a picture, uint8 [height, width, 3].
 
         Returns:
             Whether the window is still open.
@@ -96,7 +96,7 @@ class Window:
         return not self._closed
 
     def toggle_full_screen(self) -> None:
-        """Fill the screen, or be a window again."""
+        """Fill the screen, or become a window again."""
         self._full_screen = not self._full_screen
         if self._full_screen:
             self._window.set_fullscreen(desktop=True)
@@ -104,8 +104,8 @@ class Window:
             self._window.set_windowed()
 
     def to_picture(self, x: float, y: float) -> tuple[float, float]:
-        """Return the pixel of the picture that is seen at a pixel of the window."""
-        left, top, factor = self._place
+        """Return the pixel of the picture that a pixel of the window shows."""
+        left, top, factor = self._picture_place
         return (x - left) / factor, (y - top) / factor
 
     def close(self) -> None:
@@ -116,7 +116,7 @@ class Window:
             self._window = None
 
     def _open(self, width: int, height: int) -> None:
-        """Open the window, as large as a whole multiple of the picture that fits the screen."""
+        """Open the window; its size is the largest multiple of the picture that fits the screen."""
         pygame = self._pygame
         pygame.display.init()
         screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
@@ -133,7 +133,7 @@ class Window:
         self._next += self._period
 
     def _draw(self, frame: NDArray[np.uint8]) -> None:
-        """Draw a picture as large as fits, in the middle."""
+        """Draw a picture centred, as large as fits."""
         pygame = self._pygame
         surface = self._window.get_surface()
         height, width = frame.shape[:2]
@@ -141,7 +141,7 @@ class Window:
         size = (max(1, round(width * factor)), max(1, round(height * factor)))
         left = (surface.get_width() - size[0]) // 2
         top = (surface.get_height() - size[1]) // 2
-        self._place = (left, top, factor)
+        self._picture_place = (left, top, factor)
         picture = pygame.image.frombuffer(np.ascontiguousarray(frame), (width, height), "RGB")
         if size != (width, height):
             whole = factor == int(factor)
@@ -152,7 +152,7 @@ class Window:
         self._window.flip()
 
     def _close_asked(self) -> bool:
-        """Take what the user did; tell whether it was to close this window."""
+        """Take the events; return whether the user closes this window."""
         pygame = self._pygame
         closing = (pygame.WINDOWCLOSE, pygame.QUIT)
         asked = False
@@ -161,6 +161,6 @@ class Window:
                 asked = True
             elif event.window is not None:
                 pygame.event.post(event)  # for another window of this program
-        # The queue must not run full, also where nobody looks at the rest.
+        # Take all others, too, for the queue must not become full.
         self.events = pygame.event.get(exclude=closing)
         return asked

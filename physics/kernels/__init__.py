@@ -1,5 +1,6 @@
-"""How code is compiled and kept, and bytes that can be kept: the ground that knows no geometry."""
+"""How kernels are compiled and cached, and how bytes are sealed: it knows no geometry."""
 
-from .decorators import accessor, inlined, inner, is_interpreted, kernel
+from .decorators import accessor, inlined, inner, kernel
+from .numba_internals import is_interpreted
 
 __all__ = ["accessor", "inlined", "inner", "is_interpreted", "kernel"]

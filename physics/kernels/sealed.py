@@ -1,25 +1,28 @@
-"""Bytes that can be kept: with what they are, a version and a checksum before them.
+"""Bytes that can be kept: a header says what they are, their version and their checksum.
 
-Eight bytes say what it is; then come, as unsigned little-endian numbers, the format's version (2
-bytes), the CRC-32 of the content (4) and its length (8); then the content.
+The header is eight bytes that say what it is, then as unsigned little-endian numbers the format's
+version (2 bytes), the CRC-32 of the content (4) and its length (8). The content follows.
 """
 
 import struct
 import zlib
 
-_HEAD = struct.Struct("<8sHIQ")
+_HEADER = struct.Struct("<8sHIQ")
 
 
 def seal(mark: bytes, version: int, content: bytes) -> bytes:
-    """Return a content with its head; mark: eight bytes that say what it is."""
-    return _HEAD.pack(mark, version, zlib.crc32(content), len(content)) + content
+    """Return a content with its header; mark: eight bytes that say what it is."""
+    return _HEADER.pack(mark, version, zlib.crc32(content), len(content)) + content
 
 
 def unseal(what: str, mark: bytes, version: int, sealed: bytes) -> memoryview:
     """Return the content of what `seal` returned.
 
     Args:
-        what: what it should be, for errors.
+        what: the name of what is expected, for errors.
+        mark: as for `seal`.
+        version: as for `seal`; bytes of another version are refused.
+        sealed: bytes that `seal` returned.
 
     Raises:
         TypeError: it is not bytes.
@@ -28,15 +31,15 @@ def unseal(what: str, mark: bytes, version: int, sealed: bytes) -> memoryview:
     if not isinstance(sealed, bytes | bytearray | memoryview):
         raise TypeError(f"a {what} is bytes; got {type(sealed).__name__}")
     view = memoryview(sealed)
-    if len(view) < _HEAD.size or view[: len(mark)] != mark:
+    if len(view) < _HEADER.size or view[: len(mark)] != mark:
         raise ValueError(f"this is no {what}: it does not begin like one")
-    _, found, checksum, length = _HEAD.unpack_from(view)
+    _, found, checksum, length = _HEADER.unpack_from(view)
     if found != version:
         raise ValueError(
             f"the {what} is of format {found}, and this release reads format {version}: use the "
             "release that made it"
         )
-    content = view[_HEAD.size :]
+    content = view[_HEADER.size :]
     if len(content) != length:
         raise ValueError(f"the {what} is corrupt: {len(content)} bytes of {length} are there")
     if zlib.crc32(content) != checksum:

@@ -1,1 +1,1 @@
-"""What two shapes do to each other: an algorithm a file, and the one table that chooses it."""
+"""How two shapes collide: one file per algorithm, and the one table that chooses among them."""

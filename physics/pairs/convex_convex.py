@@ -1,20 +1,21 @@
 """Convex region against convex region, closed or open: separating axes.
 
 Two convex regions are disjoint exactly if a line along an edge of one of them separates them: the
-edges of the Minkowski difference are theirs. For an open region an edge of the other one is such an
-axis only if the region does not reach to infinity across it. If no axis is left, the difference is
-the whole plane and no finite translation separates the two.
+edges of their Minkowski difference are the edges of both. An edge of one is no such axis if the
+other region is open and reaches to infinity across it. If no axis remains, the difference is the
+whole plane and no finite translation separates the two.
 """
 
 import math
-from typing import Any
 
 from ..kernels import kernel
+from ..shapes.records import Edges, ShapeRecord, Shapes
 from ..tolerances import PARALLEL
+from .results import NO_IMPACT, NO_OVERLAP
 
 
 @kernel
-def lowest(shape: Any, edges: Any, x: float, y: float) -> float:
+def lowest(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
     """Return the least value of (x, y) . p over the region's points, perhaps -inf."""
     least = math.inf
     for index in range(shape.first, shape.first + shape.count):
@@ -35,9 +36,9 @@ def lowest(shape: Any, edges: Any, x: float, y: float) -> float:
 
 @kernel
 def separation_along(
-    shapes: Any, edges: Any, a: int, b: int, axis: int, dx: float, dy: float
+    shapes: Shapes, edges: Edges, a: int, b: int, axis: int, dx: float, dy: float
 ) -> tuple[float, float, float]:
-    """Return axis number ``axis`` (a's edges, then b's), from a to b, and the gap along it."""
+    """Return (x, y, gap) of an axis from a to b; ``axis`` counts a's edges, then b's."""
     first = shapes[a]
     second = shapes[b]
     if axis < first.count:
@@ -53,9 +54,9 @@ def separation_along(
 
 @kernel
 def contact_convex_convex(
-    shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float
+    shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float
 ) -> tuple[bool, float, float, float]:
-    """Return (found, normal_x, normal_y, depth), depth inf if nothing finite separates them."""
+    """Return (found, normal_x, normal_y, depth), depth inf if no translation separates them."""
     normal_x, normal_y, gap = separation_along(shapes, edges, a, b, 0, dx, dy)
     for axis in range(1, shapes[a].count + shapes[b].count):
         if gap >= 0.0:
@@ -64,14 +65,14 @@ def contact_convex_convex(
         if candidate > gap:
             normal_x, normal_y, gap = x, y, candidate
     if gap >= 0.0:
-        return False, 0.0, 0.0, 0.0
+        return NO_OVERLAP
     return True, normal_x, normal_y, -gap
 
 
 @kernel
 def sweep_convex_convex(
-    shapes: Any,
-    edges: Any,
+    shapes: Shapes,
+    edges: Edges,
     a: int,
     b: int,
     dx: float,
@@ -80,7 +81,7 @@ def sweep_convex_convex(
     vy: float,
     duration: float,
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y); region b starts at (dx, dy) and flies with (vx, vy)."""
+    """Return (time, normal_x, normal_y); region b starts at (dx, dy) and moves with (vx, vy)."""
     enter = -1.0
     leave = math.inf
     normal_x = 0.0
@@ -90,7 +91,7 @@ def sweep_convex_convex(
         velocity = x * vx + y * vy
         if gap >= 0.0:
             if velocity >= 0.0:
-                return math.inf, 0.0, 0.0
+                return NO_IMPACT
             if gap / -velocity > enter:
                 enter, normal_x, normal_y = gap / -velocity, x, y
         elif velocity > 0.0:
@@ -99,5 +100,5 @@ def sweep_convex_convex(
         _, normal_x, normal_y, _ = contact_convex_convex(shapes, edges, a, b, dx, dy)
         return 0.0, normal_x, normal_y
     if enter >= leave or enter > duration:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     return enter, normal_x, normal_y

@@ -1,10 +1,9 @@
-"""Disc against axis-aligned rectangle: mirrored into the first quadrant, two faces and a corner."""
-
-import math
+"""Disc against axis-aligned rectangle: after mirroring, only two faces and a corner count."""
 
 from ..kernels import kernel
-from ..shapes.vectors import direction
+from ..shapes.vectors import unit_vector
 from .disc_face import sweep_disc_face
+from .results import NO_CONTACT, NO_IMPACT
 
 
 @kernel
@@ -15,16 +14,16 @@ def contact_disc_box(
     gap_x = abs(dx) - half_width
     gap_y = abs(dy) - half_height
     if gap_x >= radius or gap_y >= radius:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     if gap_x > 0.0 and gap_y > 0.0:
-        normal_x, normal_y, gap = direction(gap_x, gap_y)
+        normal_x, normal_y, gap = unit_vector(gap_x, gap_y)
     elif gap_x >= gap_y:
         normal_x, normal_y, gap = 1.0, 0.0, gap_x
     else:
         normal_x, normal_y, gap = 0.0, 1.0, gap_y
     depth = radius - gap
     if depth <= 0.0:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     if dx < 0.0:
         normal_x = -normal_x
     if dy < 0.0:
@@ -44,7 +43,7 @@ def sweep_disc_box(
     vy: float,
     duration: float,
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y); the box starts at (dx, dy) and flies with (vx, vy)."""
+    """Return (time, normal_x, normal_y); the box starts at (dx, dy) and moves with (vx, vy)."""
     # Mirrored so that the box lies up and to the right: only its left and lower face can be hit.
     sign_x = 1.0
     sign_y = 1.0
@@ -57,7 +56,7 @@ def sweep_disc_box(
     gap_x = (abs(dx) - half_width) - radius
     gap_y = (abs(dy) - half_height) - radius
     if (gap_x >= 0.0 and vx >= 0.0) or (gap_y >= 0.0 and vy >= 0.0):
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     # The face entered last is the one that is hit (compared without a division). Within reach of
     # both, but not of the box, the disc is beyond their corner.
     is_x_last = gap_y < 0.0 or gap_x * vy <= gap_y * vx
@@ -78,5 +77,5 @@ def sweep_disc_box(
         high = abs(dx) + half_width
         time, normal_y, normal_x = sweep_disc_face(radius, abs(dy) - half_height, low, high, vy, vx)
     if time > duration:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     return time, sign_x * normal_x, sign_y * normal_y

@@ -1,22 +1,23 @@
 """Disc against convex region, closed or open: the farthest face decides, then its corners."""
 
 import math
-from typing import Any
 
 from ..kernels import kernel
-from ..shapes.vectors import direction
+from ..shapes.records import EdgeRecord, Edges
+from ..shapes.vectors import unit_vector
 from .disc_face import sweep_disc_face
+from .results import NO_CONTACT, NO_IMPACT
 
 
 @kernel
-def separation_from_edge(edge: Any, dx: float, dy: float) -> float:
+def separation_from_edge(edge: EdgeRecord, dx: float, dy: float) -> float:
     """Return the signed distance of the disc's centre from an edge's line; region at (dx, dy)."""
     separation: float = -(edge.normal_x * dx + edge.normal_y * dy) - edge.offset
     return separation
 
 
 @kernel
-def farthest_edge(edges: Any, first: int, count: int, dx: float, dy: float) -> tuple[int, float]:
+def farthest_edge(edges: Edges, first: int, count: int, dx: float, dy: float) -> tuple[int, float]:
     """Return the edge from whose line the disc's centre is farthest outward, and how far.
 
     If the centre is outside, the region's nearest point is on this edge: the direction to a corner
@@ -32,7 +33,7 @@ def farthest_edge(edges: Any, first: int, count: int, dx: float, dy: float) -> t
 
 
 @kernel
-def nearest_corner(edge: Any, dx: float, dy: float) -> tuple[bool, float, float]:
+def nearest_corner(edge: EdgeRecord, dx: float, dy: float) -> tuple[bool, float, float]:
     """Return whether the disc's centre lies beyond an end of the edge, and that end (else 0)."""
     start_x = dx + edge.start_x
     start_y = dy + edge.start_y
@@ -47,7 +48,7 @@ def nearest_corner(edge: Any, dx: float, dy: float) -> tuple[bool, float, float]
 
 @kernel
 def contact_disc_convex(
-    radius: float, edges: Any, first: int, count: int, dx: float, dy: float
+    radius: float, edges: Edges, first: int, count: int, dx: float, dy: float
 ) -> tuple[bool, float, float, float, float, float]:
     """Return (found, normal_x, normal_y, depth, point_x, point_y).
 
@@ -55,7 +56,7 @@ def contact_disc_convex(
     """
     index, separation = farthest_edge(edges, first, count, dx, dy)
     if separation >= radius:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     edge = edges[index]
     normal_x = -edge.normal_x
     normal_y = -edge.normal_y
@@ -63,25 +64,25 @@ def contact_disc_convex(
         beyond, corner_x, corner_y = nearest_corner(edge, dx, dy)
         if beyond:
             if corner_x * corner_x + corner_y * corner_y > radius * radius:
-                return False, 0.0, 0.0, 0.0, 0.0, 0.0
-            corner_normal_x, corner_normal_y, distance = direction(corner_x, corner_y)
+                return NO_CONTACT
+            corner_normal_x, corner_normal_y, distance = unit_vector(corner_x, corner_y)
             if distance > 0.0:
                 separation = distance
                 normal_x = corner_normal_x
                 normal_y = corner_normal_y
     depth = radius - separation
     if depth <= 0.0:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     middle = radius - 0.5 * depth
     return True, normal_x, normal_y, depth, normal_x * middle, normal_y * middle
 
 
 @kernel
 def _sweep_edge(
-    radius: float, edge: Any, dx: float, dy: float, vx: float, vy: float
+    radius: float, edge: EdgeRecord, dx: float, dy: float, vx: float, vy: float
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y) for the edge that the disc meets, if any."""
-    # The face's frame: across it toward the region, and to the left of that.
+    # The face's own axes: across it toward the region, and along it, to the left of that.
     across_x = -edge.normal_x
     across_y = -edge.normal_y
     along_x = -across_y
@@ -106,7 +107,7 @@ def _sweep_edge(
 @kernel
 def sweep_disc_convex(
     radius: float,
-    edges: Any,
+    edges: Edges,
     first: int,
     count: int,
     dx: float,
@@ -115,7 +116,7 @@ def sweep_disc_convex(
     vy: float,
     duration: float,
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y); the region's body starts at (dx, dy), flies (vx, vy)."""
+    """Return (time, normal_x, normal_y); the region's body starts at (dx, dy), moves (vx, vy)."""
     enter = -1.0
     last = -1
     for index in range(first, first + count):
@@ -124,21 +125,21 @@ def sweep_disc_convex(
         if gap >= 0.0:
             approach = edge.normal_x * vx + edge.normal_y * vy
             if approach <= 0.0:
-                return math.inf, 0.0, 0.0
+                return NO_IMPACT
             time = gap / approach
             if time > enter:
                 enter, last = time, index
     if enter > duration:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     if last < 0:
         found, normal_x, normal_y, _, _, _ = contact_disc_convex(
             radius, edges, first, count, dx, dy
         )
         if found:
             return 0.0, normal_x, normal_y
-        # Within reach of every face's line, but not of the region: beyond a corner.
+        # The disc reaches every face's line but not the region: it is beyond a corner.
         last, _ = farthest_edge(edges, first, count, dx, dy)
     time, normal_x, normal_y = _sweep_edge(radius, edges[last], dx, dy, vx, vy)
     if time > duration:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     return time, normal_x, normal_y

@@ -3,8 +3,9 @@
 import math
 
 from ..kernels import kernel
-from ..shapes.vectors import cross, direction, squared_excess
-from ..tolerances import REST
+from ..shapes.vectors import accurate_cross, squared_excess, unit_vector
+from ..tolerances import NO_SPEED_SQUARED
+from .results import NO_CONTACT, NO_IMPACT
 
 
 @kernel
@@ -14,12 +15,12 @@ def contact_disc_disc(
     """Return (found, normal_x, normal_y, depth, point_x, point_y); b's centre is at (dx, dy)."""
     reach = radius_a + radius_b
     if dx * dx + dy * dy > reach * reach:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     # Coincident centres: any direction is as good, and this one is fixed.
-    normal_x, normal_y, distance = direction(dx, dy)
+    normal_x, normal_y, distance = unit_vector(dx, dy)
     depth = reach - distance
     if depth <= 0.0:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     middle = radius_a - 0.5 * depth
     return True, normal_x, normal_y, depth, normal_x * middle, normal_y * middle
 
@@ -28,19 +29,20 @@ def contact_disc_disc(
 def sweep_point_disc(
     radius: float, x: float, y: float, vx: float, vy: float
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y) at which a point outside enters the disc about 0, or inf.
+    """Return (time, normal_x, normal_y) when a point outside enters the disc about the origin.
 
-    Distances along and across the line of flight, not the quadratic's coefficients: the larger
-    root's sum never cancels, and normal and miss are right however far away the point starts.
+    The time is inf if it does not. This computes with distances along and across the point's path,
+    not with the coefficients of a quadratic: the sum in the larger root never cancels, and normal
+    and miss are right however far away the point starts.
     """
     along = x * vx + y * vy
     squared_speed = vx * vx + vy * vy
-    if along >= 0.0 or squared_speed < REST:
-        return math.inf, 0.0, 0.0
+    if along >= 0.0 or squared_speed < NO_SPEED_SQUARED:
+        return NO_IMPACT
     speed = math.sqrt(squared_speed)
-    offset = cross(x, y, vx, vy) / speed
+    offset = accurate_cross(x, y, vx, vy) / speed
     if not abs(offset) < radius:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     half_chord = math.sqrt((radius - abs(offset)) * (radius + abs(offset)))
     excess = max(squared_excess(x, y, radius), 0.0)
     time = excess / ((half_chord - along / speed) * speed)
@@ -60,14 +62,14 @@ def sweep_disc_disc(
     vy: float,
     duration: float,
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y); disc b starts at (dx, dy), flies with (vx, vy)."""
+    """Return (time, normal_x, normal_y); disc b starts at (dx, dy), moves with (vx, vy)."""
     reach = radius_a + radius_b
-    # The squares decide the rule; only discs as good as touching need the careful answer.
+    # Squares decide nearly always; only discs that almost touch need the careful answer.
     if dx * dx + dy * dy <= reach * reach:
         found, normal_x, normal_y, _, _, _ = contact_disc_disc(radius_a, radius_b, dx, dy)
         if found:
             return 0.0, normal_x, normal_y
     time, normal_x, normal_y = sweep_point_disc(reach, dx, dy, vx, vy)
     if time > duration:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     return time, normal_x, normal_y

@@ -3,7 +3,7 @@
 import math
 
 from ..kernels import kernel
-from ..shapes.vectors import cross
+from ..shapes.vectors import accurate_cross
 from .disc_disc import sweep_point_disc
 
 
@@ -11,34 +11,35 @@ from .disc_disc import sweep_point_disc
 def sweep_disc_face(
     radius: float, height: float, low: float, high: float, speed: float, slide: float
 ) -> tuple[float, float, float]:
-    """Return (time, normal_across, normal_along) at which a disc about 0 meets a face, or inf.
+    """Return (time, normal_across, normal_along) when a disc about the origin meets a face.
 
     The face lies across the first axis at ``height``, spans ``low`` to ``high`` along the second
-    one (infinite where it is open) and flies with (speed, slide). It must be the face whose line
-    the disc meets last (height >= radius, speed < 0): then the disc meets the flat, or a corner, or
-    nothing. Or the disc is within reach of all lines, beyond a corner of this face.
+    one (infinite where it is open) and moves with (speed, slide). It must be the face whose line
+    the disc meets last (height >= radius, speed < 0): then the disc meets the face itself, one of
+    its corners, or nothing (time inf). Or the disc reaches all lines already, and is beyond a
+    corner of this face.
     """
-    # How far beyond the ends the disc meets the line, times the speed. No division, so that this
-    # is right for flights almost along the face, too, and agrees with the corners' own test.
+    # How far beyond the ends the disc meets the line, times the speed. There is no division: so
+    # this is right for motions almost along the face, too, and agrees with the corners' own test.
     reach = radius * slide
     is_near = height < radius
     corner = low
     is_flat = True
     passing = 0.0
     if low > -math.inf:
-        passing = cross(height, low, speed, slide)
+        passing = accurate_cross(height, low, speed, slide)
         is_flat = low <= 0.0 if is_near else passing <= reach
     if is_flat and high < math.inf:
         corner = high
-        passing = cross(height, high, speed, slide)
+        passing = accurate_cross(height, high, speed, slide)
         is_flat = high >= 0.0 if is_near else passing >= reach
     if is_flat:
         return (height - radius) / -speed, 1.0, 0.0
     time, across, along = sweep_point_disc(radius, height, corner, speed, slide)
     closing = -(height * speed + corner * slide)
     if time == math.inf and closing > 0.0 and speed < 0.0 and abs(passing) < abs(reach):
-        # It comes abreast of the corner within a radius of it, so that it cannot miss: rounding
-        # did, in a flight nearly parallel to the face, and the disc would sink in behind the
-        # corner. It meets it as good as at its closest, on the flat.
+        # The disc passes the corner at less than its radius, so it cannot miss; rounding said so,
+        # in a motion nearly parallel to the face, and the disc would sink in behind the corner.
+        # It meets the corner practically where it is closest, and there the normal is the face's.
         return closing / (speed * speed + slide * slide), 1.0, 0.0
     return time, across, along

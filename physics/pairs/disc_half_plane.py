@@ -1,8 +1,7 @@
 """Disc against half-plane: one signed distance."""
 
-import math
-
 from ..kernels import kernel
+from .results import NO_CONTACT, NO_IMPACT
 
 
 @kernel
@@ -15,7 +14,7 @@ def contact_disc_half_plane(
     """
     depth = radius + (offset + (normal_x * dx + normal_y * dy))
     if depth <= 0.0:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     middle = radius - 0.5 * depth
     return True, -normal_x, -normal_y, depth, -normal_x * middle, -normal_y * middle
 
@@ -32,14 +31,14 @@ def sweep_disc_half_plane(
     vy: float,
     duration: float,
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y); the half-plane's body flies with (vx, vy)."""
+    """Return (time, normal_x, normal_y); the half-plane's body moves with (vx, vy)."""
     depth = radius + (offset + (normal_x * dx + normal_y * dy))
     if depth > 0.0:
         return 0.0, -normal_x, -normal_y
     approach = normal_x * vx + normal_y * vy
     if approach <= 0.0:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     time = (0.0 - depth) / approach
     if time > duration:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     return time, -normal_x, -normal_y

@@ -1,31 +1,34 @@
 """A disc among the equal boxes of a lattice, some of its cells solid: bricks, tiles, a maze.
 
-The union of the solid cells is met, not each box for itself: faces between two solid cells and
-corners along a straight seam do not exist, so that a row of bricks gives the same bits as one wall
-(no "ghost collisions"). Cells are counted from the upper left, row by row.
+The disc meets the union of the solid cells, not each box separately. Faces between two solid cells
+and corners along a straight seam do not exist, so that a row of bricks gives the same bits as one
+wall (no "ghost collisions"). Cells are counted from the upper left, row by row.
 """
 
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..kernels import kernel
+from ..kernels.layouts import record_dtype
 from .disc_disc import sweep_point_disc
+from .results import NO_IMPACT
 
-Lattice = np.dtype(
-    (
-        np.record,
-        [
-            ("left", np.float64),  # of the lattice's upper left corner
-            ("top", np.float64),
-            ("cell_width", np.float64),
-            ("cell_height", np.float64),
-            ("columns", np.int64),
-            ("rows", np.int64),
-        ],
-    )
+Lattice = record_dtype(
+    [
+        ("left", np.float64),  # of the lattice's upper left corner
+        ("top", np.float64),
+        ("cell_width", np.float64),
+        ("cell_height", np.float64),
+        ("columns", np.int64),
+        ("rows", np.int64),
+    ]
 )
+
+# What kernels are passed (to a type checker, anything):
+LatticeRecord: TypeAlias = Any  # one `Lattice`
+SolidCells: TypeAlias = Any  # integers [rows * columns]; a cell is solid if its number is not 0
 
 
 @kernel
@@ -36,7 +39,7 @@ def lattice_index(position: float, size: float, count: int) -> int:
 
 
 @kernel
-def cell_centre(lattice: Any, cell: int) -> tuple[float, float]:
+def cell_centre(lattice: LatticeRecord, cell: int) -> tuple[float, float]:
     """Return the middle of a cell."""
     column = cell % lattice.columns
     row = cell // lattice.columns
@@ -46,17 +49,49 @@ def cell_centre(lattice: Any, cell: int) -> tuple[float, float]:
 
 
 @kernel
-def is_solid(lattice: Any, solid: Any, column: int, row: int) -> bool:
-    """Tell whether a cell is solid (``solid[cell] != 0``); none outside the lattice is."""
+def is_solid(lattice: LatticeRecord, solid: SolidCells, column: int, row: int) -> bool:
+    """Return whether a cell is solid (``solid[cell] != 0``); cells outside the lattice are not."""
     if column < 0 or row < 0 or column >= lattice.columns or row >= lattice.rows:
         return False
     return bool(solid[row * lattice.columns + column] != 0)
 
 
 @kernel
+def swept_cells(
+    lattice: LatticeRecord,
+    x: float,
+    y: float,
+    velocity_x: float,
+    velocity_y: float,
+    duration: float,
+    lower_x: float,
+    lower_y: float,
+    upper_x: float,
+    upper_y: float,
+) -> tuple[int, int, int, int]:
+    """Return (first_column, last_column, first_row, last_row) of the cells that a box may meet.
+
+    The box moves from (x, y); ``lower`` and ``upper`` are its corners relative to there. If it
+    stays outside of the lattice, each last index is less than the first.
+    """
+    end_x, end_y = x + velocity_x * duration, y + velocity_y * duration
+    low_x, high_x = min(x, end_x) + lower_x - lattice.left, max(x, end_x) + upper_x - lattice.left
+    low_y, high_y = lattice.top - max(y, end_y) - upper_y, lattice.top - min(y, end_y) - lower_y
+    width, height = lattice.cell_width * lattice.columns, lattice.cell_height * lattice.rows
+    if high_x < 0.0 or high_y < 0.0 or low_x > width or low_y > height:
+        return 0, -1, 0, -1
+    return (
+        lattice_index(low_x, lattice.cell_width, lattice.columns),
+        lattice_index(high_x, lattice.cell_width, lattice.columns),
+        lattice_index(low_y, lattice.cell_height, lattice.rows),
+        lattice_index(high_y, lattice.cell_height, lattice.rows),
+    )
+
+
+@kernel
 def sweep_disc_lattice(
-    lattice: Any,
-    solid: Any,
+    lattice: LatticeRecord,
+    solid: SolidCells,
     x: float,
     y: float,
     velocity_x: float,
@@ -69,33 +104,26 @@ def sweep_disc_lattice(
     The normal points from the cell to the disc. A disc that touches the cells meets them at time 0
     if it approaches them, and never if it slides along them or recedes.
     """
-    end_x, end_y = x + velocity_x * duration, y + velocity_y * duration
-    low_x, high_x = min(x, end_x) - radius - lattice.left, max(x, end_x) + radius - lattice.left
-    low_y, high_y = lattice.top - max(y, end_y) - radius, lattice.top - min(y, end_y) + radius
+    first_column, last_column, first_row, last_row = swept_cells(
+        lattice, x, y, velocity_x, velocity_y, duration, -radius, -radius, radius, radius
+    )
     time, normal_x, normal_y, cell = math.inf, 0.0, 0.0, -1
-    width, height = lattice.cell_width * lattice.columns, lattice.cell_height * lattice.rows
-    if high_x < 0.0 or high_y < 0.0 or low_x > width or low_y > height:
-        return time, normal_x, normal_y, cell
-    first_column = lattice_index(low_x, lattice.cell_width, lattice.columns)
-    last_column = lattice_index(high_x, lattice.cell_width, lattice.columns)
-    last_row = lattice_index(high_y, lattice.cell_height, lattice.rows)
-    for row in range(lattice_index(low_y, lattice.cell_height, lattice.rows), last_row + 1):
+    for row in range(first_row, last_row + 1):
         for column in range(first_column, last_column + 1):
             index = row * lattice.columns + column
             if solid[index] != 0:
-                found = _sweep_cell(
+                candidate, out_x, out_y = _sweep_cell(
                     lattice, solid, column, row, x, y, velocity_x, velocity_y, radius, duration
                 )
-                if found[0] < time:
-                    time, normal_x, normal_y = found
-                    cell = index
+                if candidate < time:
+                    time, normal_x, normal_y, cell = candidate, out_x, out_y, index
     return time, normal_x, normal_y, cell
 
 
 @kernel
 def _sweep_cell(
-    lattice: Any,
-    solid: Any,
+    lattice: LatticeRecord,
+    solid: SolidCells,
     column: int,
     row: int,
     x: float,
@@ -106,7 +134,7 @@ def _sweep_cell(
     duration: float,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y) of a moving disc's first impact on one solid cell."""
-    # Only the two faces and the three corners that look against the velocity can be met first.
+    # Only the two faces that look against the velocity can be met, and the corners at them.
     side = 1 if velocity_x < 0.0 else -1  # of the face that a horizontal motion meets
     level = 1 if velocity_y < 0.0 else -1
     left = lattice.left + column * lattice.cell_width
@@ -129,7 +157,7 @@ def _sweep_cell(
         if time <= duration and left <= foot <= right:
             return time, 0.0, float(level)
 
-    time, normal_x, normal_y = math.inf, 0.0, 0.0
+    time, normal_x, normal_y = NO_IMPACT
     for corner in range(4):
         across = 1 if corner % 2 else -1
         along = 1 if corner // 2 else -1
@@ -140,8 +168,9 @@ def _sweep_cell(
         corner_x = right if across > 0 else left
         corner_y = top if along > 0 else bottom
         from_x, from_y = x - corner_x, y - corner_y
-        met, out_x, out_y = sweep_point_disc(radius, from_x, from_y, velocity_x, velocity_y)
-        # The rest of the circle about the corner lies within the faces' reach.
-        if met < time and met <= duration and out_x * across >= 0.0 and out_y * along >= 0.0:
-            time, normal_x, normal_y = met, out_x, out_y
+        candidate, out_x, out_y = sweep_point_disc(radius, from_x, from_y, velocity_x, velocity_y)
+        # Only a quarter of the circle about the corner counts; on the rest the faces come first.
+        is_in_quarter = out_x * across >= 0.0 and out_y * along >= 0.0
+        if candidate < time and candidate <= duration and is_in_quarter:
+            time, normal_x, normal_y = candidate, out_x, out_y
     return time, normal_x, normal_y

@@ -1,11 +1,11 @@
-"""What a pair does about a collision: shares of a separation, and the exchange of momentum."""
+"""How a pair responds to a collision: the shares of a separation, the exchange of momentum."""
 
 from ..kernels import kernel
 
 
 @kernel
 def shares(inverse_mass_a: float, inverse_mass_b: float) -> tuple[float, float]:
-    """Return the parts of a separation that the bodies take: reciprocal to mass, static 0."""
+    """Return each body's share of a separation: reciprocal to its mass, 0 for a static body."""
     total = inverse_mass_a + inverse_mass_b
     if total == 0.0:
         return 0.0, 0.0
@@ -16,12 +16,13 @@ def shares(inverse_mass_a: float, inverse_mass_b: float) -> tuple[float, float]:
 def reflect(
     vx: float, vy: float, normal_x: float, normal_y: float, restitution: float
 ) -> tuple[float, float]:
-    """Return a velocity thrown back by something immovable at rest, whichever way it moves.
+    """Return a velocity after a bounce off something that never moves.
 
-    The normal's sign does not matter. Along an axis and with restitution 1 it is exact.
+    The sign of the normal does not matter. The result is exact for a normal along an axis and
+    restitution 1.
     """
-    # The division makes up for a normal that rounding left a little longer or shorter than 1: the
-    # speed would otherwise drift, the same way at every bounce.
+    # Rounding leaves a normal a little longer or shorter than 1. Without the division the speed
+    # would drift, the same way at every bounce.
     along = (vx * normal_x + vy * normal_y) / (normal_x * normal_x + normal_y * normal_y)
     change = (restitution + 1.0) * along
     return vx - change * normal_x, vy - change * normal_y
@@ -48,7 +49,7 @@ def bounce_velocities(
     approach = (v1x - v2x) * normal_x + (v1y - v2y) * normal_y
     if approach <= 0.0 or share_1 + share_2 == 0.0:
         return v1x, v1y, v2x, v2y, 0.0
-    # As in `reflect`: no drift from a normal whose length is 1 only up to rounding.
+    # The division prevents a drift, as in `reflect`.
     change = (restitution + 1.0) * (approach / (normal_x * normal_x + normal_y * normal_y))
     return (
         v1x - change * share_1 * normal_x,

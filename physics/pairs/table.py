@@ -1,13 +1,12 @@
 """The one table: which algorithm serves which pair of colliders.
 
-An algorithm is registered for an ordered pair of kinds and serves the swapped pair, too: swapped
-arguments, normal turned round. A pair of one kind is put into an order of its own, by where the two
-lie, so that swapping it turns the normal round bit for bit. (Two identical shapes in the very same
-place cannot be told apart: their normal is the same whichever comes first.)
+An algorithm is registered for an ordered pair of kinds. It serves the swapped pair, too, with
+swapped arguments and a reversed normal. Two shapes of one kind are ordered by their positions, so
+that swapping them reverses the normal bit for bit. (Two identical shapes at the very same position
+cannot be told apart: their normal is the same whichever comes first.)
 """
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +20,9 @@ from ..shapes.records import (
     KINDS,
     PARTICLE,
     RECTANGLE,
+    EdgeRecord,
+    Edges,
+    Shapes,
 )
 from .box_box import contact_box_box, sweep_box_box
 from .convex_convex import contact_convex_convex, sweep_convex_convex
@@ -28,9 +30,10 @@ from .disc_box import contact_disc_box, sweep_disc_box
 from .disc_convex import contact_disc_convex, sweep_disc_convex
 from .disc_disc import contact_disc_disc, sweep_disc_disc
 from .disc_half_plane import contact_disc_half_plane, sweep_disc_half_plane
+from .results import NO_CONTACT, NO_IMPACT
 from .touching_point import touching_point
 
-# The algorithms. Each treats two kinds in this order.
+# The algorithms. The name gives the order of the two kinds.
 DISC_DISC = 0
 DISC_HALF_PLANE = 1
 DISC_BOX = 2
@@ -74,7 +77,7 @@ def _algorithm_table() -> npt.NDArray[np.int64]:
 
 
 def _swap_table() -> npt.NDArray[np.bool_]:
-    """Return for every ordered pair of kinds whether it is registered the other way round."""
+    """Return for every ordered pair of kinds whether it is registered in the other order."""
     table = np.zeros((KINDS, KINDS), np.bool_)
     for first, second, _ in REGISTERED:
         table[second, first] = first != second
@@ -86,7 +89,7 @@ SWAPPED = _swap_table()
 
 
 @kernel
-def _edge_order(one: Any, other: Any) -> float:
+def _edge_order(one: EdgeRecord, other: EdgeRecord) -> float:
     """Return a number whose sign orders two edges; 0 if they are equal."""
     order: float = one.offset - other.offset
     if order == 0.0:
@@ -105,7 +108,7 @@ def _edge_order(one: Any, other: Any) -> float:
 
 
 @kernel
-def _shape_order(shapes: Any, edges: Any, a: int, b: int) -> float:
+def _shape_order(shapes: Shapes, edges: Edges, a: int, b: int) -> float:
     """Return a number whose sign orders two shapes of one kind; 0 if they are equal."""
     first = shapes[a]
     second = shapes[b]
@@ -121,7 +124,7 @@ def _shape_order(shapes: Any, edges: Any, a: int, b: int) -> float:
 
 
 @kernel
-def _is_swapped(shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float) -> bool:
+def _is_swapped(shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float) -> bool:
     """Return whether the pair is computed as (b, a): by kind, then position, then data."""
     kind_a = shapes[a].kind
     kind_b = shapes[b].kind
@@ -135,7 +138,7 @@ def _is_swapped(shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float) -
 
 @kernel
 def _contact(
-    shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float
+    shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float
 ) -> tuple[bool, float, float, float, float, float]:
     """Return the contact of a pair in registered order."""
     first = shapes[a]
@@ -159,15 +162,15 @@ def _contact(
     else:
         found, normal_x, normal_y, depth = contact_convex_convex(shapes, edges, a, b, dx, dy)
     if not found:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+        return NO_CONTACT
     x, y = touching_point(shapes, edges, a, b, dx, dy, normal_x, normal_y)
     return True, normal_x, normal_y, depth, x, y
 
 
 @kernel
 def _impact(
-    shapes: Any,
-    edges: Any,
+    shapes: Shapes,
+    edges: Edges,
     a: int,
     b: int,
     dx: float,
@@ -210,32 +213,32 @@ def _impact(
 
 @kernel
 def contact_between(
-    shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float
+    shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float
 ) -> tuple[bool, float, float, float, float, float]:
     """Return (found, normal_x, normal_y, depth, point_x, point_y) for b at (dx, dy) from a.
 
     The unit normal points from a to b; depth is the shortest translation that separates (inf if
-    none does); the point is relative to a, halfway between the surfaces that separate along the
-    normal. Nothing is found if the two merely touch.
+    no translation does); the point is relative to a, halfway between the surfaces that separate
+    along the normal. Nothing is found if the two merely touch.
     """
     if _is_swapped(shapes, edges, a, b, dx, dy):
         found, normal_x, normal_y, depth, x, y = _contact(shapes, edges, b, a, -dx, -dy)
         if not found:
-            return False, 0.0, 0.0, 0.0, 0.0, 0.0
+            return NO_CONTACT
         return True, -normal_x, -normal_y, depth, x + dx, y + dy
     return _contact(shapes, edges, a, b, dx, dy)
 
 
 @kernel
-def overlap_between(shapes: Any, edges: Any, a: int, b: int, dx: float, dy: float) -> bool:
+def overlap_between(shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float) -> bool:
     """Return whether the interiors of a and of b, at (dx, dy) from a, overlap."""
     return contact_between(shapes, edges, a, b, dx, dy)[0]
 
 
 @kernel
 def impact_between(
-    shapes: Any,
-    edges: Any,
+    shapes: Shapes,
+    edges: Edges,
     a: int,
     b: int,
     dx: float,
@@ -244,19 +247,19 @@ def impact_between(
     vy: float,
     duration: float,
 ) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y) for b at (dx, dy) from a, flying with (vx, vy) past it.
+    """Return (time, normal_x, normal_y) for b at (dx, dy) from a, moving with (vx, vy).
 
-    Time is when the two touch and begin to overlap, at most ``duration``; inf if they do not: not
-    if they touch and separate, or slide past each other. If they overlap already, it is 0 and the
-    normal is the contact's. The unit normal points from a to b.
+    Time is when the two touch and begin to overlap, at most ``duration``. It is inf if they never
+    begin to overlap: if they stay apart, touch and separate, or slide past each other. If they
+    overlap already, it is 0 and the normal is the contact's. The unit normal points from a to b.
     """
     is_swapped = _is_swapped(shapes, edges, a, b, dx, dy)
     if is_swapped:
         a, b, dx, dy, vx, vy = b, a, -dx, -dy, -vx, -vy
     time, normal_x, normal_y = _impact(shapes, edges, a, b, dx, dy, vx, vy, duration)
-    # So far ahead that no number is large enough for it, at a speed of 1e-320 for instance.
+    # The time may be too large for a number, at a speed of 1e-320 for instance.
     if not time < math.inf:
-        return math.inf, 0.0, 0.0
+        return NO_IMPACT
     if is_swapped:
         return time, -normal_x, -normal_y
     return time, normal_x, normal_y
@@ -266,7 +269,7 @@ def impact_between(
 def _interval_may_touch(
     lower_a: float, upper_a: float, lower_b: float, upper_b: float, velocity: float, time: float
 ) -> bool:
-    """Return whether interval b, flying for the time, may meet interval a."""
+    """Return whether interval b, moving for the time, may meet interval a."""
     if lower_b > upper_a:
         return velocity < 0.0 and lower_b + velocity * time <= upper_a
     if upper_b < lower_a:
@@ -276,9 +279,9 @@ def _interval_may_touch(
 
 @kernel
 def may_touch(
-    shapes: Any, a: int, b: int, dx: float, dy: float, vx: float, vy: float, duration: float
+    shapes: Shapes, a: int, b: int, dx: float, dy: float, vx: float, vy: float, duration: float
 ) -> bool:
-    """Return False only if the bounding boxes of a and of b, flying past, stay apart."""
+    """Return False only if the bounding boxes of a and of b, which moves, stay apart."""
     first = shapes[a]
     second = shapes[b]
     return _interval_may_touch(

@@ -1,17 +1,20 @@
-"""Where two regions touch, or will once they are apart: the middle of what faces what."""
+"""Where two regions touch, or will touch once they are apart: the middle of what they share."""
 
 import math
-from typing import Any
 
 from ..kernels import kernel
+from ..shapes.records import Edges, ShapeRecord, Shapes
 from ..tolerances import PARALLEL
 
 
 @kernel
-def support_feature(shape: Any, edges: Any, x: float, y: float) -> tuple[float, float, float]:
-    """Return the region's height along the unit vector (x, y), and where it has it.
+def support_feature(
+    shape: ShapeRecord, edges: Edges, x: float, y: float
+) -> tuple[float, float, float]:
+    """Return (height, low, high) of a region's farthest points along the unit vector (x, y).
 
-    That is an interval along (-y, x): one value for a corner or disc, perhaps infinite for an edge.
+    They span ``low`` to ``high`` along (-y, x): one value for a corner or a disc, perhaps infinite
+    for an edge.
     """
     if shape.count == 0:
         return shape.radius, 0.0, 0.0
@@ -42,8 +45,8 @@ def support_feature(shape: Any, edges: Any, x: float, y: float) -> tuple[float, 
 
 @kernel
 def touching_point(
-    shapes: Any,
-    edges: Any,
+    shapes: Shapes,
+    edges: Edges,
     a: int,
     b: int,
     dx: float,

@@ -1,1 +1,1 @@
-"""What a collider is: the six classes, and the records that kernels read of them."""
+"""Colliders: the six classes, and the records of them that kernels read."""

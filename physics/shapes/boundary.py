@@ -1,14 +1,15 @@
-"""From half-planes and polygons to the edges of the region they bound. Runs when shapes are built.
+"""From half-planes and polygons to the edges of the region that they bound.
 
-Everything here is in Python floats and may use what stepping may not (angles, for instance).
+This runs when shapes are built, in Python floats. It may use what stepping may not, angles for
+instance.
 """
 
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from ..arguments import Vector
 from ..tolerances import NO_LENGTH, PARALLEL
-from ..validation import Vector
 
 
 class BoundaryEdge(NamedTuple):
@@ -26,9 +27,9 @@ class BoundaryEdge(NamedTuple):
 
 
 class Line(NamedTuple):
-    """The half-plane ``normal . p <= offset``, and the ends of its edge so far as they are known.
+    """The half-plane ``normal . p <= offset``, and the ends of its edge as far as they are known.
 
-    A known end is kept to the bit where the neighbour knows it, too; others are computed.
+    An end that both neighbours know is kept to the bit; others are computed.
     """
 
     normal: Vector
@@ -38,12 +39,12 @@ class Line(NamedTuple):
 
 
 def line_through(start: Vector, end: Vector) -> Line:
-    """Return the half-plane to the left of the way from one point to another."""
+    """Return the half-plane to the left of the line from one point to another."""
     x = end[0] - start[0]
     y = end[1] - start[1]
     length = math.hypot(x, y)
     normal = (y / length, -x / length)
-    # Rounding lets the ends differ a little in their distance: neither is preferred.
+    # By rounding the ends differ a little in their distance: take the middle.
     return Line(normal, 0.5 * (dot(normal, start) + dot(normal, end)), start, end)
 
 
@@ -58,28 +59,28 @@ def cross(a: Vector, b: Vector) -> float:
 
 
 def boundary(lines: Sequence[Line]) -> tuple[BoundaryEdge, ...]:
-    """Return the edges, counterclockwise, of the intersection of half-planes; redundant ones go.
+    """Return the edges of the intersection of half-planes, counterclockwise, none redundant.
 
     Raises:
         ValueError: if the intersection is empty, or has no inside.
     """
     scale = max(abs(line.offset) for line in lines)
-    left = [line for index, line in enumerate(lines) if _bounds(index, lines, scale)]
-    if not left:
+    kept = [line for index, line in enumerate(lines) if _is_on_boundary(index, lines, scale)]
+    if not kept:
         raise ValueError(
             "the half-planes have no inside in common: their intersection is empty, a point or a "
             "line. A region needs half-planes that overlap"
         )
-    left.sort(key=lambda line: math.atan2(line.normal[1], line.normal[0]))
-    corners = [_corner(line, left[(index + 1) % len(left)]) for index, line in enumerate(left)]
+    kept.sort(key=lambda line: math.atan2(line.normal[1], line.normal[0]))
+    corners = [_corner(line, kept[(index + 1) % len(kept)]) for index, line in enumerate(kept)]
     # An open chain begins with the edge that comes from infinity.
-    first = next((i for i in range(len(left)) if corners[i - 1] is None), 0)
-    order = [(first + i) % len(left) for i in range(len(left))]
-    return tuple(edge(left[i], corners[i - 1], corners[i]) for i in order)
+    first = next((i for i in range(len(kept)) if corners[i - 1] is None), 0)
+    order = [(first + i) % len(kept) for i in range(len(kept))]
+    return tuple(boundary_edge(kept[i], corners[i - 1], corners[i]) for i in order)
 
 
-def _bounds(index: int, lines: Sequence[Line], scale: float) -> bool:
-    """Return whether some length of this line is on the boundary of the intersection."""
+def _is_on_boundary(index: int, lines: Sequence[Line], scale: float) -> bool:
+    """Return whether a part of this line is on the boundary of the intersection."""
     line = lines[index]
     along = (-line.normal[1], line.normal[0])
     foot = (line.offset * line.normal[0], line.offset * line.normal[1])
@@ -116,7 +117,7 @@ def _corner(line: Line, following: Line) -> Vector | None:
     )
 
 
-def edge(line: Line, start: Vector | None, end: Vector | None) -> BoundaryEdge:
+def boundary_edge(line: Line, start: Vector | None, end: Vector | None) -> BoundaryEdge:
     """Return a line's edge between two corners; a missing one (None) is at infinity."""
     foot = (line.offset * line.normal[0], line.offset * line.normal[1])
     first = start or end or foot
@@ -129,9 +130,9 @@ def edge(line: Line, start: Vector | None, end: Vector | None) -> BoundaryEdge:
 
 
 def polygon_lines(vertices: Sequence[Vector], open_edges: frozenset[int]) -> list[Line]:
-    """Return the lines of a counterclockwise convex polygon's edges, those missing left out.
+    """Return the lines of a counterclockwise convex polygon's edges, except for missing ones.
 
-    Edges in line with each other are joined.
+    Edges on one line are joined.
 
     Raises:
         ValueError: if the polygon is degenerate, clockwise or not convex.
@@ -152,7 +153,7 @@ def polygon_lines(vertices: Sequence[Vector], open_edges: frozenset[int]) -> lis
     for position, corner in enumerate(corners):
         following = corners[(position + 1) % len(corners)]
         pieces = range(corner, following + (count if following <= corner else 0))
-        # Of an edge in pieces, any piece that is there bounds the region with its whole line.
+        # If any piece of a divided edge is there, its whole line bounds the region.
         present = [piece for piece in pieces if piece % count not in open_edges]
         if present:
             line = line_through(vertices[corner], vertices[following])
@@ -161,7 +162,7 @@ def polygon_lines(vertices: Sequence[Vector], open_edges: frozenset[int]) -> lis
 
 
 def _turning_corners(vertices: Sequence[Vector]) -> list[int]:
-    """Return the indices of the vertices at which a convex polygon turns, having checked it."""
+    """Check that a polygon is convex, and return the indices of the vertices at which it turns."""
     count = len(vertices)
     area = 0.5 * sum(
         cross(_between(vertices[0], vertices[i]), _between(vertices[0], vertices[i + 1]))

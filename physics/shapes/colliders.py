@@ -8,13 +8,13 @@ from functools import cached_property
 from operator import index
 from typing import Any, ClassVar, Literal
 
-from ..validation import Vector, finite, not_negative, positive, vector
+from ..arguments import Vector, finite, not_negative, positive, vector
 from . import records
-from .boundary import BoundaryEdge, Line, boundary, edge, polygon_lines
+from .boundary import BoundaryEdge, Line, boundary, boundary_edge, polygon_lines
 
 
 class Collider(ABC):
-    """A rounded convex region. Immutable, hashable, and equal to another of the same data."""
+    """A rounded convex region. Immutable, hashable, and equal to another one with the same data."""
 
     #: Its row and column in the dispatch table, one of the kinds in `records`.
     kind: ClassVar[int]
@@ -35,7 +35,7 @@ class Particle(Collider):
     """A disc about the body's position.
 
     Args:
-        radius: not negative. A radius of 0 is a point: it hits what has an inside.
+        radius: not negative. With radius 0 it is a point, which hits every region with an inside.
     """
 
     radius: float
@@ -59,10 +59,10 @@ class Particle(Collider):
 class HalfPlane(Collider):
     """The half-plane ``normal . p <= offset``; the normal points out of it.
 
-    Normal and offset are both divided by the normal's length: the region stays what was given.
+    Normal and offset are both divided by the normal's length: the region stays the same.
 
     Args:
-        normal: (x, y), not null, of any length.
+        normal: (x, y), of any length but 0.
         offset: the boundary's distance from the body's position, times the normal's length.
     """
 
@@ -81,7 +81,7 @@ class HalfPlane(Collider):
     @property
     def edges(self) -> tuple[BoundaryEdge, ...]:
         """Its one edge, a whole line."""
-        return (edge(Line(self.normal, self.offset), None, None),)
+        return (boundary_edge(Line(self.normal, self.offset), None, None),)
 
 
 _DIRECTIONS: dict[str, Vector] = {
@@ -97,7 +97,7 @@ class AxisAlignedHalfPlane(Collider):
     """A half-plane whose boundary is parallel to an axis.
 
     Args:
-        direction: which way its outward normal points, ``"+x"``, ``"-x"``, ``"+y"`` or ``"-y"``. A
+        direction: where its outward normal points, ``"+x"``, ``"-x"``, ``"+y"`` or ``"-y"``. A
             floor, for instance, is ``"+y"``.
         offset: the boundary's distance from the body's position, in that direction.
     """
@@ -121,7 +121,7 @@ class AxisAlignedHalfPlane(Collider):
     @property
     def edges(self) -> tuple[BoundaryEdge, ...]:
         """Its one edge, a whole line."""
-        return (edge(Line(self.normal, self.offset), None, None),)
+        return (boundary_edge(Line(self.normal, self.offset), None, None),)
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class Rectangle(Collider):
 
     @property
     def edges(self) -> tuple[BoundaryEdge, ...]:
-        """Its sides, that toward its first axis first."""
+        """Its sides, first the one toward its first axis."""
         return self._edges
 
     @cached_property
@@ -185,18 +185,18 @@ class Rectangle(Collider):
 class Convex(Collider):
     """A convex polygon, closed or open to infinity: the intersection of its edges' half-planes.
 
-    Edges in line are joined, redundant ones removed, and edges whose neighbour is missing end where
-    they meet the next one that is there, if they do. Two regions with the same edges are equal.
+    Edges on one line are joined, and redundant ones removed. An edge whose neighbour is missing
+    ends where it meets the next edge, if it does. Two regions with the same edges are equal.
 
     Args:
         vertices: counterclockwise, in body coordinates; at least three (two for a single edge).
-            Edge ``i`` runs from vertex ``i`` to the next one, the last to vertex 0.
-        open_edges: indices of the edges that are missing: the region goes on there.
+            Edge ``i`` runs from vertex ``i`` to the next one, the last edge to vertex 0.
+        open_edges: indices of the missing edges: the region extends to infinity there.
         rotation: of the vertices about the body's position, counterclockwise, radians.
 
     Raises:
-        ValueError: if the polygon is degenerate, clockwise or not convex, no edge is left, or the
-            region is empty.
+        ValueError: if the polygon is degenerate, clockwise or not convex, if no edge remains, or if
+            the region is empty.
     """
 
     _edges: tuple[BoundaryEdge, ...]
@@ -220,7 +220,7 @@ class Convex(Collider):
         if missing:
             edges = boundary(lines)
         else:
-            edges = tuple(edge(line, line.start, line.end) for line in lines)
+            edges = tuple(boundary_edge(line, line.start, line.end) for line in lines)
         _set(self, "_edges", _from_least_corner(edges))
 
     @classmethod
@@ -248,17 +248,17 @@ class Convex(Collider):
 
     @property
     def edges(self) -> tuple[BoundaryEdge, ...]:
-        """The edges that are left, counterclockwise; an open chain's from end to end."""
+        """The remaining edges, counterclockwise; an open chain's from end to end."""
         return self._edges
 
     @cached_property
     def vertices(self) -> tuple[Vector, ...]:
-        """The corners, counterclockwise: as many as edges, or fewer if it is open."""
+        """The corners, counterclockwise: as many as there are edges, or fewer if it is open."""
         return tuple((edge.start_x, edge.start_y) for edge in self.edges if edge.has_start)
 
     @cached_property
     def half_planes(self) -> tuple[HalfPlane, ...]:
-        """The half-planes of which it is the intersection, none redundant, counterclockwise."""
+        """The half-planes whose intersection it is, counterclockwise and without redundant ones."""
         return tuple(HalfPlane((e.normal_x, e.normal_y), e.offset) for e in self.edges)
 
     @property
@@ -282,7 +282,7 @@ class Convex(Collider):
 def turned_axis(rotation: float) -> Vector:
     """Return (cos, sin) of an angle in radians, exact for multiples of a quarter turn.
 
-    An angle that is a rounding away from such a multiple is taken for it.
+    An angle within rounding of such a multiple counts as that multiple.
     """
     quarters = round(rotation / (0.5 * math.pi))
     if abs(rotation - quarters * (0.5 * math.pi)) <= 4.0 * math.ulp(rotation):
@@ -291,7 +291,7 @@ def turned_axis(rotation: float) -> Vector:
 
 
 def _rectangle_edges(width: float, height: float, axis: Vector) -> tuple[BoundaryEdge, ...]:
-    """Return the sides of a centred rectangle; its own first axis is a unit vector."""
+    """Return the sides of a centred rectangle; ``axis`` is its own first axis, a unit vector."""
     x, y = axis
     normals = ((x, y), (-y, x), (-x, -y), (y, -x))
     offsets = (0.5 * width, 0.5 * height, 0.5 * width, 0.5 * height)
@@ -304,11 +304,11 @@ def _rectangle_edges(width: float, height: float, axis: Vector) -> tuple[Boundar
                 line.offset * line.normal[1] + following.offset * following.normal[1],
             )
         )
-    return tuple(edge(line, corners[i - 1], corners[i]) for i, line in enumerate(lines))
+    return tuple(boundary_edge(line, corners[i - 1], corners[i]) for i, line in enumerate(lines))
 
 
 def _from_least_corner(edges: tuple[BoundaryEdge, ...]) -> tuple[BoundaryEdge, ...]:
-    """Return a closed region's edges from its leftmost corner on, so that equal ones compare so."""
+    """Return a closed region's edges from its leftmost corner on: equal regions compare equal."""
     if not all(edge.has_start for edge in edges):
         return edges
     first = min(range(len(edges)), key=lambda i: (edges[i].start_x, edges[i].start_y))
@@ -316,12 +316,12 @@ def _from_least_corner(edges: tuple[BoundaryEdge, ...]) -> tuple[BoundaryEdge, .
 
 
 def _edge_indices(open_edges: Iterable[int], count: int) -> frozenset[int]:
-    """Return the indices of missing edges, having checked them."""
+    """Check the indices of missing edges and return them."""
     indices = [index(edge) for edge in open_edges]
-    for number in indices:
-        if not 0 <= number < count:
+    for position in indices:
+        if not 0 <= position < count:
             raise ValueError(
-                f"open_edges names edge {number}, but there are edges 0 to {count - 1} only"
+                f"open_edges names edge {position}, but there are edges 0 to {count - 1} only"
             )
     return frozenset(indices)
 

@@ -1,4 +1,4 @@
-"""Colliders as records: what the kernels read."""
+"""Colliders as records, which kernels read."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import Vector
 from .boundary import BoundaryEdge
 from .colliders import Collider
 from .records import Edge, Shape
@@ -15,7 +16,7 @@ ShapeTable = tuple[npt.NDArray[Any], npt.NDArray[Any]]
 
 
 def shape_table(colliders: Iterable[Collider]) -> ShapeTable:
-    """Return (shapes, edges): one `Shape` a collider, in order, and all their `Edge` records.
+    """Return (shapes, edges): one `Shape` per collider, in order, and all their `Edge` records.
 
     There is at least one edge, so that even discs alone give arrays that kernels accept.
 
@@ -30,7 +31,9 @@ def shape_table(colliders: Iterable[Collider]) -> ShapeTable:
                 f"a collider is needed, such as Particle(1.0), but this is {collider!r}"
             )
         own = collider.edges
-        rows.append((collider.kind, len(edges), len(own), collider.rounding, *_bounds(collider)))
+        rows.append(
+            (collider.kind, len(edges), len(own), collider.rounding, *_bounding_box(collider))
+        )
         edges.extend(own)
     table = np.zeros(max(1, len(edges)), Edge)
     for index, edge in enumerate(edges):
@@ -41,8 +44,8 @@ def shape_table(colliders: Iterable[Collider]) -> ShapeTable:
     return shapes, table
 
 
-def _bounds(collider: Collider) -> tuple[float, float, float, float]:
-    """Return (lower_x, lower_y, upper_x, upper_y) of a region, infinite where it is."""
+def _bounding_box(collider: Collider) -> tuple[float, float, float, float]:
+    """Return (lower_x, lower_y, upper_x, upper_y) of a region, infinite where it is unbounded."""
     edges = collider.edges
     radius = collider.rounding
     return (
@@ -53,9 +56,9 @@ def _bounds(collider: Collider) -> tuple[float, float, float, float]:
     )
 
 
-def _reach(edges: Sequence[BoundaryEdge], direction: tuple[float, float]) -> float:
-    """Return how far a core extends in a direction, perhaps infinitely."""
-    x, y = direction
+def _reach(edges: Sequence[BoundaryEdge], axis: Vector) -> float:
+    """Return how far a core extends along the unit vector ``axis``, perhaps infinitely."""
+    x, y = axis
     farthest = -math.inf if edges else 0.0
     for edge in edges:
         rise = y * edge.normal_x - x * edge.normal_y

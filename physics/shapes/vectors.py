@@ -9,12 +9,12 @@ _SPLITTER = 134217729.0
 
 
 @kernel
-def direction(x: float, y: float) -> tuple[float, float, float]:
+def unit_vector(x: float, y: float) -> tuple[float, float, float]:
     """Return the unit vector along (x, y) and its length; (1, 0) and 0 for the null vector."""
     scale = max(abs(x), abs(y))
     if scale == 0.0:
         return 1.0, 0.0, 0.0
-    # Scaled first: squares of lengths below 1e-154 would underflow and the result not be unit.
+    # Scaled first: squares of lengths below 1e-154 would underflow, and spoil the unit length.
     x /= scale
     y /= scale
     length = math.sqrt(x * x + y * y)
@@ -34,16 +34,16 @@ def product_error(a: float, b: float, product: float) -> float:
 
 
 @kernel
-def cross(ax: float, ay: float, bx: float, by: float) -> float:
+def accurate_cross(ax: float, ay: float, bx: float, by: float) -> float:
     """Return ax by - ay bx to the last digits, however nearly parallel a and b are (Kahan)."""
-    left = ax * by
-    right = ay * bx
-    return (left - right) + (product_error(ax, by, left) - product_error(ay, bx, right))
+    first = ax * by
+    second = ay * bx
+    return (first - second) + (product_error(ax, by, first) - product_error(ay, bx, second))
 
 
 @kernel
 def squared_excess(x: float, y: float, radius: float) -> float:
-    """Return x^2 + y^2 - radius^2 as if computed with twice the digits (Ogita, Rump, Oishi)."""
+    """Return x^2 + y^2 - radius^2 as if with twice the digits (Ogita, Rump, Oishi 2005)."""
     square_x = x * x
     square_y = y * y
     square_r = radius * radius

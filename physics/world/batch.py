@@ -7,46 +7,46 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import whole
 from ..body import FloatArray
-from ..validation import whole
 from .records import Clock
-from .snapshots import pack_states, unpack_states
-from .stepper import Stepper, checked_step
+from .states import Stepper, checked_step, pack_states, unpack_states
 from .world import World
 
 
 class WorldBatch:
-    """Copies of a world, each of which goes its own way.
+    """Copies of a world that develop independently.
 
-    What moves has a place and velocity in each of them; what is static is shared. Each copy gives
-    the same bits as the world alone would, for any number of copies and threads.
+    Each copy has its own moving bodies; static bodies are shared. Each copy gives the same bits as
+    the world alone would, for any number of copies and threads.
 
     Args:
-        world: what to copy, as it is now. It stays as it is.
-        num_worlds: how many.
-        threads: that step them. Each takes a part of the worlds.
+        world: the world to copy, as it is now. It does not change.
+        num_worlds: the number of copies.
+        threads: the number of threads that step them, each a part of the worlds.
 
     Attributes:
         moving: int64 [m], the indices of the bodies that move.
         positions, velocities: float64 [num_worlds, m, 2], of these bodies. Views of the states:
-            what is written there counts from the next step on. A body put elsewhere is in no
-            sensor yet.
+            write to them to change the next step. A body with a new position is inside no sensor
+            until a step finds it there.
     """
 
     def __init__(self, world: World, num_worlds: int, *, threads: int = 1) -> None:
         count = whole("num_worlds", num_worlds, at_least=1)
         parts = min(count, whole("threads", threads, at_least=1))
-        setup, state = world.memory()
+        built = world.built()
+        setup = built.setup
         self._setup = setup
-        self._states = np.repeat(state, count, axis=0)
+        self._states = np.repeat(built.states, count, axis=0)
         self.moving = setup.moving
         motions = setup.motion_view(self._states)
         self.positions: FloatArray = motions[:, :, :2]
         self.velocities: FloatArray = motions[:, :, 2:]
-        bounds = np.linspace(0, count, parts + 1).astype(int)
-        self._starts = bounds[:-1].tolist()
+        cuts = np.linspace(0, count, parts + 1).astype(int)
+        self._starts = cuts[:-1].tolist()
         self._steppers = [
-            Stepper(setup, self._states[start:stop]) for start, stop in itertools.pairwise(bounds)
+            Stepper(setup, self._states[start:stop]) for start, stop in itertools.pairwise(cuts)
         ]
         self._pool = ThreadPoolExecutor(parts - 1, "arkanoid-worlds") if parts > 1 else None
 
@@ -64,22 +64,23 @@ class WorldBatch:
         return self._clocks()["capped"].copy()
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
-        """Let time go on in every world by ``steps`` steps of ``dt``.
+        """Step every world ``steps`` times by ``dt``.
 
         Returns:
             `Hit` records, by world (field ``world``) and time, as `World.step` returns them.
 
         Raises:
-            ValueError: ``dt`` is negative or not finite, or a body has outgrown the numbers.
+            ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
+                large for a number.
         """
-        length, number = checked_step(dt, steps)
+        length, count = checked_step(dt, steps)
         if self._pool is None:
-            return self._steppers[0].step(length, number)
-        running = [self._pool.submit(part.step, length, number) for part in self._steppers[1:]]
+            return self._steppers[0].step(length, count)
+        running = [self._pool.submit(part.step, length, count) for part in self._steppers[1:]]
         try:
-            first = self._steppers[0].step(length, number)
+            first = self._steppers[0].step(length, count)
         finally:
-            # Nobody is still at work when this returns, not even if it raises.
+            # All threads have finished when this returns, also if it raises.
             wait(running)
         parts = [first, *(task.result() for task in running)]
         for start, part in zip(self._starts, parts, strict=True):
@@ -87,16 +88,16 @@ class WorldBatch:
         return np.concatenate(parts)
 
     def snapshot(self) -> bytes:
-        """Return all that changes as the worlds are stepped: `restore` goes back to it."""
-        return pack_states(self._states, self._setup.desk)
+        """Return all that changes as the worlds are stepped, as bytes for `restore`."""
+        return pack_states(self._states, self._setup)
 
     def restore(self, snapshot: bytes) -> None:
         """Go back to a snapshot of a batch of this size of the same world.
 
         Raises:
-            ValueError: if it is corrupt, or of another batch; this one stays as it is then.
+            ValueError: if it is corrupt, or of another batch. This batch does not change then.
         """
-        unpack_states(snapshot, self._states, self._setup.desk)
+        unpack_states(snapshot, self._states, self._setup)
 
     def close(self) -> None:
         """End the threads, if there are any."""

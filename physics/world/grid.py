@@ -1,16 +1,18 @@
-"""The broad phase: a uniform grid of square cells, those at its border reaching to infinity.
+"""The broad phase: a uniform grid of square cells; those at its border extend to infinity.
 
-What is static is entered once, into every cell from which a moving body may touch it. What moves is
-in the cell of its position, and a cell is as large as the largest moving body, so that two of them
-can only touch from cells next to each other. A moving body too large for that *roams*: it is tried
-against everything; so is a static one without bounds, or in too many cells.
+A static body is entered once, into every cell from which a moving body may touch it. A moving body
+is in the cell of its position. A cell is as large as the largest moving body, so that two of them
+can only touch from the same cell or neighbouring cells. A moving body that is too large for that
+*roams*: it is tested against every body. So is a static body that is unbounded, or in too many
+cells.
 """
 
 import math
-from typing import Any
 
 from ..kernels import kernel
-from .memory import (
+from .records import Box, Boxes, HeaderRecord, Headers, Indices, TraitRecord
+from .view import (
+    WorldView,
     boundless_of,
     firsts_of,
     header_of,
@@ -29,16 +31,16 @@ NO_ONE = -1
 
 @kernel
 def cell_index(position: float, start: float, cell: float, count: int) -> int:
-    """Return the column or row of a position: those outside belong to the border."""
+    """Return the column or row of a position; a position outside belongs to the border."""
     # Clamped as a float: a position may be too large for an integer.
     return int(max(0.0, min(count - 1.0, math.floor((position - start) / cell))))
 
 
 @kernel
-def covered_cells(header: Any, box: Any, reach: float) -> tuple[int, int, int, int]:
+def covered_cells(header: HeaderRecord, box: Box, reach: float) -> tuple[int, int, int, int]:
     """Return (first_column, last_column, first_row, last_row) of a box (lower x, y, upper x, y).
 
-    A moving body that reaches no further than ``reach`` touches it from these cells only.
+    Only from there can a moving body touch it whose points are within ``reach`` of its position.
     """
     return (
         cell_index(box[0] - reach, header.left, header.cell, header.columns),
@@ -49,11 +51,15 @@ def covered_cells(header: Any, box: Any, reach: float) -> tuple[int, int, int, i
 
 
 @kernel
-def count_cells(headers: Any, boxes: Any, reach: float, covered: Any, counts: Any) -> None:
+def count_cells(
+    headers: Headers, boxes: Boxes, reach: float, covered: Indices, counts: Indices
+) -> None:
     """Count how many cells each box covers, and how many boxes cover each cell.
 
     Args:
-        boxes: float64 [n, 4]; covered: int64 [n], -1 on entry for boxes that are left out.
+        headers: the world's header, which describes the grid.
+        boxes: float64 [n, 4]; reach: see `covered_cells`.
+        covered: int64 [n]; on entry -1 for boxes to skip, on return the number of cells.
         counts: int64 [cells + 1], zeros on entry; cell c is counted in c + 1.
     """
     header = headers[0]
@@ -68,13 +74,16 @@ def count_cells(headers: Any, boxes: Any, reach: float, covered: Any, counts: An
 
 
 @kernel
-def fill_cells(headers: Any, boxes: Any, reach: float, bodies: Any, ends: Any, items: Any) -> None:
+def fill_cells(
+    headers: Headers, boxes: Boxes, reach: float, bodies: Indices, ends: Indices, items: Indices
+) -> None:
     """Enter the boxes' bodies into the cells that they cover.
 
     Args:
-        bodies: int64 [n], whose box each is.
+        headers, boxes, reach: as for `count_cells`.
+        bodies: int64 [n], the body of each box.
         ends: int64 [cells], where each cell's items begin; on return, where they end.
-        items: int64, the bodies of one cell after the other.
+        items: int64, on return the bodies, cell by cell.
     """
     header = headers[0]
     for index in range(boxes.shape[0]):
@@ -87,7 +96,7 @@ def fill_cells(headers: Any, boxes: Any, reach: float, bodies: Any, ends: Any, i
 
 
 @kernel
-def enter(world: Any, slot: int) -> None:
+def enter(world: WorldView, slot: int) -> None:
     """Put a moving body into the list of its plan's cell, if there are lists."""
     heads = heads_of(world)
     if heads.shape[0] == 0:
@@ -104,7 +113,7 @@ def enter(world: Any, slot: int) -> None:
 
 
 @kernel
-def leave(world: Any, slot: int) -> None:
+def leave(world: WorldView, slot: int) -> None:
     """Take a moving body out of the list of its plan's cell, if there are lists."""
     heads = heads_of(world)
     if heads.shape[0] == 0:
@@ -120,7 +129,7 @@ def leave(world: Any, slot: int) -> None:
 
 
 @kernel
-def enter_all(world: Any) -> None:
+def enter_all(world: WorldView) -> None:
     """Put every moving body that does not roam into the cell of its position."""
     header = header_of(world)
     heads = heads_of(world)
@@ -142,7 +151,7 @@ def enter_all(world: Any) -> None:
 def time_to_cross(
     position: float, velocity: float, start: float, cell: float, index: int, count: int
 ) -> float:
-    """Return in how long a body leaves its column or row; inf if there is none beyond."""
+    """Return in how long a body leaves its column or row; inf if there is no next one."""
     if velocity > 0.0 and index < count - 1:
         return max(0.0, (start + (index + 1) * cell - position) / velocity)
     if velocity < 0.0 and index > 0:
@@ -151,10 +160,10 @@ def time_to_cross(
 
 
 @kernel
-def interacts(one: Any, other: Any) -> bool:
-    """Tell whether two bodies' traits let them meet: by their masks, and one of them must yield.
+def interacts(one: TraitRecord, other: TraitRecord) -> bool:
+    """Return whether two bodies may meet: their masks allow it, and one of them has a mass.
 
-    A sensor is met by all that is not a sensor, and by what has no mass, too.
+    A sensor meets every body that is no sensor, also one without a mass.
     """
     if (one.category & other.mask) == 0 or (other.category & one.mask) == 0:
         return False
@@ -164,68 +173,69 @@ def interacts(one: Any, other: Any) -> bool:
 
 
 @kernel
-def find_near(world: Any, slot: int, only_later: bool) -> int:
-    """Write into ``near`` whom a moving body may meet while it is in its cell; return how many.
+def find_near(world: WorldView, slot: int, only_later: bool) -> int:
+    """Write the bodies that a moving body may meet from its cell into ``near``; return how many.
 
     Args:
-        only_later: of the bodies that move, only those of later slots, so that going through all
-            slots gives every pair once.
+        world, slot: the moving body.
+        only_later: of the moving bodies, write only those with later slots, so that going through
+            all slots gives every pair once.
     """
     least = slot + 1 if only_later else 0
     trait = traits_of(world)[moving_of(world)[slot]]
     if trait.roams:
-        return _take_all(world, trait, slot, least)
+        return _append_all(world, trait, slot, least)
     boundless, firsts, items = boundless_of(world), firsts_of(world), items_of(world)
     count = 0
     for index in range(boundless.shape[0]):
-        count = _take(world, trait, boundless[index], count)
+        count = _append(world, trait, boundless[index], count)
     plan = plans_of(world)[slot]
     own = plan.row * header_of(world).columns + plan.column
     for index in range(firsts[own], firsts[own + 1]):
-        count = _take(world, trait, items[index], count)
+        count = _append(world, trait, items[index], count)
     if heads_of(world).shape[0] == 0:
         moving = moving_of(world)
         for other in range(least, moving.shape[0]):
             if other != slot:
-                count = _take(world, trait, moving[other], count)
+                count = _append(world, trait, moving[other], count)
         return count
-    return _take_around(world, trait, slot, least, count)
+    return _append_around(world, trait, slot, least, count)
 
 
 @kernel
-def _take_all(world: Any, trait: Any, slot: int, least: int) -> int:
-    """Consider everybody but the own slot, and what moves from a slot on; return how many count."""
+def _append_all(world: WorldView, trait: TraitRecord, slot: int, least: int) -> int:
+    """Append static bodies, and moving ones from slot ``least`` on; return how many there are."""
     traits = traits_of(world)
     count = 0
     for other in range(traits.shape[0]):
         theirs = traits[other].slot
         if theirs < 0 or (theirs != slot and theirs >= least):
-            count = _take(world, trait, other, count)
+            count = _append(world, trait, other, count)
     return count
 
 
 @kernel
-def _take_around(world: Any, trait: Any, slot: int, least: int, count: int) -> int:
-    """Consider who roams, and who is in the nine cells around, from a slot on."""
+def _append_around(world: WorldView, trait: TraitRecord, slot: int, least: int, count: int) -> int:
+    """Append roaming bodies, and those in the nine cells around, from slot ``least`` on."""
     traits, moving, roaming = traits_of(world), moving_of(world), roaming_of(world)
     header, heads, plans = header_of(world), heads_of(world), plans_of(world)
     for index in range(roaming.shape[0]):
         theirs = traits[roaming[index]].slot
         if theirs >= least and theirs != slot:
-            count = _take(world, trait, roaming[index], count)
+            count = _append(world, trait, roaming[index], count)
     plan = plans[slot]
     for row in range(max(0, plan.row - 1), min(header.rows, plan.row + 2)):
         for column in range(max(0, plan.column - 1), min(header.columns, plan.column + 2)):
             other = heads[row * header.columns + column]
             while other != NO_ONE:
                 if other >= least and other != slot:
-                    count = _take(world, trait, moving[other], count)
+                    count = _append(world, trait, moving[other], count)
                 other = plans[other].next
     return count
 
 
 @kernel
-def _take(world: Any, trait: Any, other: int, count: int) -> int:
+def _append(world: WorldView, trait: TraitRecord, other: int, count: int) -> int:
     """Append a body to ``near`` if the two interact; return how many there are."""
     if not interacts(trait, traits_of(world)[other]):
         return count

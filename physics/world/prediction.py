@@ -1,18 +1,21 @@
-"""What every moving body does next, if nothing interferes: the heart of the event-driven step.
+"""What every moving body does next, if nothing interferes: the core of the event-driven step.
 
 Each body has one plan, its earliest event (Lubachevsky, How to simulate billiards and similar
-systems, J. Comput. Phys. 94, 1991). Plans hold until one of the two bodies changes its course.
+systems, J. Comput. Phys. 94, 1991). A plan holds until one of its two bodies changes its course.
 """
 
 import math
-from typing import Any
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
-from ..tolerances import NO_APPROACH, SAME_PLACE
+from ..shapes.records import Edges, ShapeRecord
+from ..tolerances import NO_APPROACH, SAME_POINT
 from .clock_time import elapsed, later
 from .grid import find_near, time_to_cross
-from .memory import (
+from .records import CROSS_X, CROSS_Y, MEET, NOTHING, PlanRecord, TraitRecord
+from .tournament import replay
+from .view import (
+    WorldView,
     edges_of,
     header_of,
     inside_of,
@@ -26,31 +29,31 @@ from .memory import (
     traits_of,
     winners_of,
 )
-from .records import CROSS_X, CROSS_Y, MEET, NOTHING
-from .tournament import replay
 
 
 @kernel
-def rests(world: Any, slot: int) -> bool:
-    """Tell whether a body has used up its hits of this step, and stays where it is."""
+def is_capped(world: WorldView, slot: int) -> bool:
+    """Return whether a body has used up its hits of this step, and so stays where it is."""
     return bool(slot >= 0 and plans_of(world)[slot].hits >= header_of(world).max_hits)
 
 
 @kernel
-def place(world: Any, body: int, now: float, now_low: float) -> tuple[float, float, float, float]:
-    """Return (x, y, vx, vy) of a body at a time of the step."""
+def motion_at(
+    world: WorldView, body: int, now: float, now_low: float
+) -> tuple[float, float, float, float]:
+    """Return (x, y, vx, vy) of a body at a time within the step."""
     trait = traits_of(world)[body]
     if trait.slot < 0:
         return trait.home_x, trait.home_y, 0.0, 0.0
     motion = motions_of(world)[trait.slot]
     plan = plans_of(world)[trait.slot]
-    since = 0.0 if rests(world, trait.slot) else elapsed(now, now_low, plan.at, plan.at_low)
+    since = 0.0 if is_capped(world, trait.slot) else elapsed(now, now_low, plan.at, plan.at_low)
     return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
 
 
 @kernel
-def is_inside(world: Any, one: Any, a: int, other: Any, b: int) -> bool:
-    """Tell whether one of two bodies (with their traits) is a sensor and has noticed the other."""
+def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
+    """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
     bodies = traits_of(world).shape[0]
     if one.sensor >= 0:
         return bool(inside_of(world)[one.sensor * bodies + b])
@@ -61,16 +64,18 @@ def is_inside(world: Any, one: Any, a: int, other: Any, b: int) -> bool:
 
 @kernel
 def _approaches(vx: float, vy: float, normal_x: float, normal_y: float, speed: float) -> bool:
-    """Tell whether what touches or overlaps, perhaps by rounding only, is to bounce.
+    """Return whether two bodies that touch or overlap, perhaps only by rounding, have to bounce.
 
-    The velocity is the other one's relative to the body from which the normal points. The speed is
-    that of both together, on which the rounding of this velocity depends.
+    Args:
+        vx, vy: velocity of the second body, to which the normal points, relative to the first.
+        normal_x, normal_y: the normal.
+        speed: the sum of both bodies' speeds, on which the rounding of the velocity depends.
     """
     return bool(-(vx * normal_x + vy * normal_y) > NO_APPROACH * speed)
 
 
 @kernel
-def skewness(shape: Any, edges: Any, x: float, y: float) -> float:
+def _skewness(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
     """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
     least = 1.0
     for index in range(shape.first, shape.first + shape.count):
@@ -80,24 +85,42 @@ def skewness(shape: Any, edges: Any, x: float, y: float) -> float:
 
 
 @kernel
-def predict(world: Any, slot: int, now: float, now_low: float, only_later: bool) -> None:
-    """Make a body's plan anew: the first event that comes, from now on.
+def _is_straighter(
+    world: WorldView, plan: PlanRecord, other: int, normal_x: float, normal_y: float
+) -> bool:
+    """Return whether a body is met more along a face's normal than the partner that is planned.
+
+    This decides between two bodies that are met at the same time, within rounding. A disc that
+    lands on the seam of two boxes meets the face of one and not the corner of the other.
+    """
+    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
+    rank = _skewness(shapes[traits[other].collider], edges, normal_x, normal_y)
+    partner = shapes[traits[plan.partner].collider]
+    best_rank = _skewness(partner, edges, plan.normal_x, plan.normal_y)
+    return bool(rank < best_rank or (rank == best_rank and other < plan.partner))
+
+
+@kernel
+def predict(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
+    """Make a new plan for a body: its first event from now on.
 
     Args:
-        only_later: consider only the bodies of later slots (whose plans then need not consider this
-            one).
+        world, slot: the body.
+        now, now_low: the time.
+        only_later: consider only moving bodies with later slots (whose plans then need not
+            consider this one).
     """
     plan = plans_of(world)[slot]
     plan.kind = NOTHING
     plan.time = math.inf
     plan.time_low = 0.0
-    if not rests(world, slot):
+    if not is_capped(world, slot):
         _find_event(world, slot, now, now_low, only_later)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
-def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: bool) -> None:
+def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
     """Set a body's plan to its first event, if there is one."""
     shapes = shapes_of(world)
     edges = edges_of(world)
@@ -106,20 +129,20 @@ def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: b
     plan = plans_of(world)[slot]
     body = moving_of(world)[slot]
     own = traits[body]
-    x, y, vx, vy = place(world, body, now, now_low)
+    x, y, vx, vy = motion_at(world, body, now, now_low)
     best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
     for index in range(find_near(world, slot, only_later)):
         other = near[index]
         trait = traits[other]
-        their_x, their_y, their_vx, their_vy = place(world, other, now, now_low)
+        their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
         dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
         slack = 0.0
         if trait.slot < 0 and ux * ux + uy * uy > 0.0:
-            places = abs(x) + abs(y) + abs(dx) + abs(dy)
-            slack = SAME_PLACE * places / math.sqrt(ux * ux + uy * uy)
+            coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
+            slack = SAME_POINT * coordinates / math.sqrt(ux * ux + uy * uy)
         if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
             continue
-        if rests(world, trait.slot) or is_inside(world, own, body, trait, other):
+        if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
             continue
         time, normal_x, normal_y = impact_between(
             shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, best + slack
@@ -132,15 +155,10 @@ def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: b
             if not _approaches(ux, uy, normal_x, normal_y, speed):
                 continue
         if plan.kind == MEET and abs(time - best) <= slack:
-            # Both at once, as far as numbers can tell. Where the disc comes down on the seam of two
-            # boxes, a face is met and not the other box's corner.
-            rank = skewness(shapes[trait.collider], edges, normal_x, normal_y)
-            partner = shapes[traits[plan.partner].collider]
-            best_rank = skewness(partner, edges, plan.normal_x, plan.normal_y)
-            is_first = rank < best_rank or (rank == best_rank and other < plan.partner)
+            is_first = _is_straighter(world, plan, other, normal_x, normal_y)
         else:
-            # What meets comes before what crosses; of two that meet, the order of the bodies
-            # decides, not that of the grid.
+            # At the same time, a meeting comes before a crossing. Of two meetings, the order of the
+            # bodies decides, not the order of the grid.
             is_first = time < best or plan.kind != MEET or other < plan.partner
         if is_first:
             best = time
@@ -153,8 +171,10 @@ def _find_event(world: Any, slot: int, now: float, now_low: float, only_later: b
 
 
 @kernel
-def _find_crossing(world: Any, plan: Any, x: float, y: float, vx: float, vy: float) -> float:
-    """Plan to leave the cell, if the body will; return in how long."""
+def _find_crossing(
+    world: WorldView, plan: PlanRecord, x: float, y: float, vx: float, vy: float
+) -> float:
+    """Plan to leave the cell, if the body does; return in how long."""
     header = header_of(world)
     time_x = time_to_cross(x, vx, header.left, header.cell, plan.column, header.columns)
     time_y = time_to_cross(y, vy, header.bottom, header.cell, plan.row, header.rows)
@@ -165,8 +185,8 @@ def _find_crossing(world: Any, plan: Any, x: float, y: float, vx: float, vy: flo
 
 
 @kernel
-def find_stale(world: Any, slot: int, count: int) -> int:
-    """Append to ``stale`` whoever planned to meet a body, which changed its course."""
+def find_stale(world: WorldView, slot: int, count: int) -> int:
+    """Append the bodies to ``stale`` that planned to meet one whose course has changed."""
     body = moving_of(world)[slot]
     for index in range(find_near(world, slot, False)):
         other = traits_of(world)[near_of(world)[index]].slot

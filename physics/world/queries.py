@@ -1,16 +1,17 @@
-"""Questions to a world: who overlaps a shape, and what is met first on a straight way."""
+"""Questions to a world: which bodies overlap a shape, and which one it meets first."""
 
 import math
-from typing import Any
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch, overlap_between
-from .memory import motions_of, open_world, traits_of
+from ..shapes.records import Edges, Shapes
+from .records import Block, Indices, TraitRecord
+from .view import WorldView, motions_of, open_world, traits_of
 
 
 @kernel
-def _position(world: Any, trait: Any) -> tuple[float, float]:
-    """Return where a body is between two steps."""
+def _position(world: WorldView, trait: TraitRecord) -> tuple[float, float]:
+    """Return the position of a body between two steps."""
     if trait.slot < 0:
         return trait.home_x, trait.home_y
     motion = motions_of(world)[trait.slot]
@@ -19,24 +20,25 @@ def _position(world: Any, trait: Any) -> tuple[float, float]:
 
 @kernel
 def find_overlapping(
-    state: Any,
-    desk: Any,
-    shapes: Any,
-    edges: Any,
+    state: Block,
+    workspace: Block,
+    shapes: Shapes,
+    edges: Edges,
     x: float,
     y: float,
     mask: int,
-    found: Any,
+    found: Indices,
 ) -> int:
-    """Write who overlaps the table's last shape at (x, y) into ``found``; return how many.
+    """Write the bodies that overlap the last shape, at (x, y), into ``found``; return how many.
 
     Args:
-        state, desk: uint8 [bytes], a world's.
-        shapes, edges: the world's table with one more shape.
-        mask: of the categories that count.
+        state, workspace: of the world.
+        shapes, edges: the world's shapes, and one more at the end.
+        x, y: position of the last shape.
+        mask: the categories that count.
         found: int64 [bodies].
     """
-    world = open_world(state, desk)
+    world = open_world(state, workspace)
     own = shapes.shape[0] - 1
     count = 0
     for body in range(traits_of(world).shape[0]):
@@ -55,22 +57,22 @@ def find_overlapping(
 
 @kernel
 def find_first(
-    state: Any,
-    desk: Any,
-    shapes: Any,
-    edges: Any,
+    state: Block,
+    workspace: Block,
+    shapes: Shapes,
+    edges: Edges,
     x: float,
     y: float,
     way_x: float,
     way_y: float,
     mask: int,
 ) -> tuple[int, float, float, float]:
-    """Return (body, fraction, normal_x, normal_y) of what the table's last shape meets first.
+    """Return (body, fraction, normal_x, normal_y) of the body that the last shape meets first.
 
-    It starts at (x, y) and goes the whole way at fraction 1. The normal points to the body, which
-    is -1 if there is none.
+    The shape moves from (x, y), fraction 0, by (way_x, way_y), fraction 1. The normal points to
+    the body, which is -1 if it meets none. Arguments are as for `find_overlapping`.
     """
-    world = open_world(state, desk)
+    world = open_world(state, workspace)
     own = shapes.shape[0] - 1
     first, best, normal_x, normal_y = -1, math.inf, 0.0, 0.0
     for body in range(traits_of(world).shape[0]):

@@ -1,49 +1,46 @@
-"""The data of a simulation: bodies at work, what they are about to do, and what happened to them.
+"""The data of a simulation: bodies, what they are about to do, and what happened to them.
 
-Two blocks of memory hold a world, each one array of bytes, so that a call of a kernel costs little
+Two blocks of memory hold a world. Each is one array of bytes, so that a kernel call costs little
 and a snapshot is a copy:
 
-- its *state*, what changes: `Clock`, the `Motion` of everything that moves, each one's `Plan` with
-  the order of these plans in time, and which bodies are inside of which sensor. A batch is a matrix
-  of such rows.
-- the *desk* at which it is stepped: what does not change, `Header`, the bodies' `Trait` records,
-  shapes, the grid of what is static; and scratch paper. The worlds of a batch are stepped at one
-  desk, one after the other, or at a copy of it for each thread.
+- its *state*, which changes: `Clock`, the `Motion` of every moving body, the `Plan` of each with
+  the order of these plans in time, and which bodies are inside which sensor. A batch is a matrix
+  with one such row per world.
+- the *workspace* in which it is stepped: what does not change (`Header`, the bodies' `Trait`
+  records, shapes, the grid of static bodies) and scratch memory. The worlds of a batch share one
+  workspace, one after the other; each thread has a copy.
 """
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..kernels.layouts import record_dtype
+
 # What an event is (`Hit.kind`).
-HIT = 0  # the two bounced off each other
+HIT = 0  # two bodies bounced off each other
 BEGIN = 1  # a body entered a sensor
-# It left the sensor. In what direction is not known of one that was moved out: by relaxation, or
-# in a world that is not continuous.
+# A body left a sensor. The normal is zero if the direction is not known: for a body that relaxation
+# moved out, or in a world that is not continuous.
 END = 2
 
-# What a body's plan is about (`Plan.kind`).
-NOTHING = 0  # to fly on to the end of the step
-CROSS_X = 1  # to go over into the next column of the grid
-CROSS_Y = 2
+# What a body plans (`Plan.kind`).
+NOTHING = 0  # to move straight on until the step ends
+CROSS_X = 1  # to cross the border to the next column of the grid
+CROSS_Y = 2  # the same, to the next row
 MEET = 3  # to meet its partner
 
-
-def _record(fields: list[tuple[Any, ...]]) -> "np.dtype[Any]":
-    return np.dtype((np.record, fields))
-
-
 # Times are sums of two numbers, of which the second is small: see `clock_time`.
-Clock = _record(
+Clock = record_dtype(
     [
-        ("time", np.float64),  # that has been simulated
+        ("time", np.float64),  # simulated so far
         ("time_low", np.float64),
-        ("capped", np.int64),  # times that a body used up its hits of a step
-        ("planned", np.int64),  # the plans hold, if all motions are as the last step left them
+        ("capped", np.int64),  # how often a body used up its hits of a step
+        ("planned", np.int64),  # 1: the plans hold, if all motions are as the last step left them
     ]
 )
 
-Motion = _record(
+Motion = record_dtype(
     [
         ("x", np.float64),
         ("y", np.float64),
@@ -52,38 +49,38 @@ Motion = _record(
     ]
 )
 
-Trait = _record(
+Trait = record_dtype(
     [
         ("collider", np.int64),  # index in the shape table
         ("slot", np.int64),  # of its motion and plan; -1 for a static body
-        ("home_x", np.float64),  # where a static body is
+        ("home_x", np.float64),  # position of a static body
         ("home_y", np.float64),
         ("inverse_mass", np.float64),
         ("restitution", np.float64),
         ("category", np.int64),  # bits
         ("mask", np.int64),  # bits: the categories that it meets
-        ("sensor", np.int64),  # row in the table of who is inside; -1 for what is solid
-        ("roams", np.int64),  # it moves and is too large for the grid
+        ("sensor", np.int64),  # row in the table of who is inside; -1 for a solid body
+        ("roams", np.int64),  # 1: it moves and is too large for the grid
     ]
 )
 
-# A pair whose restitution is not the product of its bodies'.
-Override = _record([("a", np.int64), ("b", np.int64), ("restitution", np.float64)])
+# A pair whose restitution is not the product of its bodies' values.
+Override = record_dtype([("a", np.int64), ("b", np.int64), ("restitution", np.float64)])
 
-Header = _record(
+Header = record_dtype(
     [
         ("bodies", np.int64),
         ("movers", np.int64),  # bodies that move
         ("sensors", np.int64),
         ("max_hits", np.int64),  # of one body in one step
-        ("continuous", np.int64),  # with times of impact, not by steps
-        ("left", np.float64),  # of the grid's cells, which reach to infinity at its border
+        ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
+        ("left", np.float64),  # of the grid
         ("bottom", np.float64),
         ("cell", np.float64),  # size
         ("columns", np.int64),
         ("rows", np.int64),
-        # Where the parts of the desk begin, in bytes, and how many items each has where that is not
-        # one of the numbers above.
+        # Where each part of the workspace begins, in bytes, and its number of items where that is
+        # none of the numbers above.
         ("traits_at", np.int64),
         ("shapes_at", np.int64),
         ("shapes", np.int64),
@@ -103,19 +100,19 @@ Header = _record(
         ("progress_at", np.int64),
         ("near_at", np.int64),
         ("stale_at", np.int64),
-        # The same of the state; the clock and the motions come first.
-        ("left_as_at", np.int64),
+        # The same for the state, which begins with the clock and the motions.
+        ("motions_after_step_at", np.int64),
         ("plans_at", np.int64),
         ("winners_at", np.int64),
         ("leaves", np.int64),
         ("heads_at", np.int64),
-        ("heads", np.int64),  # one a cell, or none where there is little that moves
+        ("heads", np.int64),  # one per cell, or none where few bodies move
         ("inside_at", np.int64),
         ("state_size", np.int64),
     ]
 )
 
-Plan = _record(
+Plan = record_dtype(
     [
         ("time", np.float64),  # when it happens
         ("time_low", np.float64),
@@ -128,39 +125,55 @@ Plan = _record(
         ("hits", np.int64),  # in this step
         ("column", np.int64),  # of the grid
         ("row", np.int64),
-        ("next", np.int64),  # slots of the others in its cell, or -1
+        ("next", np.int64),  # slots of the neighbours in its cell's list, or -1
         ("previous", np.int64),
     ]
 )
 
-Progress = _record(
+# How far a call of `step_worlds` has come, so that the next one can continue.
+Progress = record_dtype(
     [
-        ("world", np.int64),  # being stepped, in a batch
+        ("world", np.int64),  # index of the world that is being stepped
         ("step", np.int64),  # of that world
-        ("running", np.int64),  # the step has begun
+        ("running", np.int64),  # 1: the step has begun
         ("end", np.float64),  # of the step
         ("end_low", np.float64),
-        ("slot", np.int64),  # of the pair to go on with, where nothing is continuous
-        ("near", np.int64),
-        ("full", np.int64),  # there was no room for another hit
-        ("touching", np.int64),  # two bodies overlap or touch
-        ("crowded", np.int64),  # relaxation gave up, with overlaps left for the next step
+        ("next_slot", np.int64),  # the next pair of the lecture's procedure
+        ("next_near", np.int64),
+        ("full", np.int64),  # 1: there was no room for another hit
+        ("touching", np.int64),  # 1: two bodies overlap or touch
+        ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
     ]
 )
 
-Hit = _record(
+Hit = record_dtype(
     [
-        ("world", np.int64),  # of the batch; 0 for a single one
+        ("world", np.int64),  # index in the batch; 0 for a single world
         ("kind", np.int64),  # HIT, BEGIN or END
         ("time", np.float64),  # of the world
         ("a", np.int64),  # the bodies' indices, a < b
         ("b", np.int64),
-        (
-            "normal",
-            np.float64,
-            (2,),
-        ),  # unit vector from a to b; null where it is not known, see END
+        ("normal", np.float64, (2,)),  # unit vector from a to b; zero if not known, see END
         ("point", np.float64, (2,)),
         ("impulse", np.float64),  # along the normal for a, the opposite for b; 0 with sensors
     ]
 )
+
+# What kernels are passed. Numba types it; to a type checker it is anything.
+Block: TypeAlias = Any  # uint8 [bytes]
+Blocks: TypeAlias = Any  # uint8 [worlds, bytes]
+Indices: TypeAlias = Any  # int64 [n]
+Flags: TypeAlias = Any  # uint8 [n]
+Boxes: TypeAlias = Any  # float64 [n, 4]: lower x, lower y, upper x, upper y
+Box: TypeAlias = Any  # float64 [4], one of them
+ClockRecord: TypeAlias = Any  # one `Clock`
+Motions: TypeAlias = Any  # `Motion` [movers]
+TraitRecord: TypeAlias = Any  # one `Trait`
+Traits: TypeAlias = Any  # `Trait` [bodies]
+Overrides: TypeAlias = Any  # `Override` [pairs]
+HeaderRecord: TypeAlias = Any  # one `Header`
+Headers: TypeAlias = Any  # `Header` [1]
+PlanRecord: TypeAlias = Any  # one `Plan`
+Plans: TypeAlias = Any  # `Plan` [movers]
+ProgressRecord: TypeAlias = Any  # one `Progress`
+Hits: TypeAlias = Any  # `Hit` [room]

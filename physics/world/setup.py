@@ -1,4 +1,4 @@
-"""From bodies to the memory that steps them: traits, shapes, and the grid of what is static."""
+"""From bodies to the workspace that steps them: traits, shapes, and the grid of static bodies."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,35 +8,35 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import inverse_mass
+from ..body import FloatArray
 from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
-from ..validation import inverse_mass
 from .grid import NO_ONE, count_cells, fill_cells
-from .memory import CLOCK
 from .records import Header, Motion, Override, Plan, Progress, Trait
 from .tournament import leaf_count
+from .view import CLOCK_SIZE
 
-FloatArray = npt.NDArray[np.float64]
-Bytes = npt.NDArray[np.uint8]
+ByteArray = npt.NDArray[np.uint8]
 
 # Cells per body. More of them are crossed more often, fewer hold more neighbours each.
 CELLS_PER_MOVING = 2.0
 CELLS_PER_STATIC = 0.5
-# Of so few bodies every one is tried, in one cell; of so few that move, every one that does.
+# With so few bodies there is only one cell; with so few moving ones, no lists of them.
 FEW_BODIES = 8
-# A moving body that is so many times larger than most roams; a static one that would lie in more
-# than this share of all cells is tried everywhere.
+# A moving body that is so many times larger than the median roams. A static body in more than this
+# share of all cells is tested everywhere instead.
 LARGE = 8.0
 MANY_CELLS = 0.25
-# The cells are larger than the largest body by so much, for rounding.
+# Cells are larger than the largest body by this fraction, because of rounding.
 MARGIN = 1e-6
 
 
 @dataclass(frozen=True)
-class Item:
-    """What a world keeps of a body, besides its place and velocity."""
+class BodySpec:
+    """What a world keeps of a body, besides its position and velocity."""
 
     collider: Collider
     mass: float | None
@@ -48,70 +48,83 @@ class Item:
 
 @dataclass(frozen=True)
 class Setup:
-    """The memory of a world, ready to be stepped, but for its state.
+    """All of a world but its state.
 
     Attributes:
-        desk: uint8 [bytes], see `world_records`.
+        workspace: uint8 [bytes], see `records`.
         moving: int64 [movers], the bodies that move, in the order of their motions.
         sensing: int64 [sensors], the sensors.
         shapes, edges: the table of the distinct colliders.
         traits: `Trait` [bodies].
     """
 
-    desk: Bytes
+    workspace: ByteArray
     moving: npt.NDArray[np.int64]
     sensing: npt.NDArray[np.int64]
     shapes: npt.NDArray[Any]
     edges: npt.NDArray[Any]
     traits: npt.NDArray[Any]
 
-    def new_state(self, num_worlds: int) -> Bytes:
+    def new_state(self, num_worlds: int) -> ByteArray:
         """Return zeroed states, uint8 [num_worlds, bytes]."""
         return np.zeros((num_worlds, self.header.state_size), np.uint8)
 
     @property
     def header(self) -> Any:
         """The `Header`."""
-        return self.desk[: Header.itemsize].view(Header)[0]
+        return self.workspace[: Header.itemsize].view(Header)[0]
 
-    def motion_view(self, states: Bytes) -> FloatArray:
-        """Return a view of states' motions, float64 [num_worlds, movers, 4]: x, y, vx, vy."""
-        part: FloatArray = states[:, CLOCK : self.header.left_as_at].view(np.float64)
+    def motion_view(self, states: ByteArray) -> FloatArray:
+        """Return a view of the motions, float64 [num_worlds, movers, 4]: x, y, vx, vy."""
+        part: FloatArray = states[:, CLOCK_SIZE : self.header.motions_after_step_at].view(
+            np.float64
+        )
         return part.reshape(len(states), len(self.moving), 4)
 
-    def left_as_view(self, states: Bytes) -> FloatArray:
-        """Return a view of the motions as the last step left them, like `motion_view`."""
-        part: FloatArray = states[:, self.header.left_as_at : self.header.plans_at].view(np.float64)
+    def motions_after_step_view(self, states: ByteArray) -> FloatArray:
+        """Return a view of the motions after the last step, as from `motion_view`."""
+        part: FloatArray = states[:, self.header.motions_after_step_at : self.header.plans_at].view(
+            np.float64
+        )
         return part.reshape(len(states), len(self.moving), 4)
 
-    def inside_view(self, states: Bytes) -> Bytes:
-        """Return a view of who is inside, uint8 [num_worlds, sensors, bodies]."""
+    def inside_view(self, states: ByteArray) -> ByteArray:
+        """Return a view of which bodies are inside, uint8 [num_worlds, sensors, bodies]."""
         size = len(self.sensing) * len(self.traits)
         part = states[:, self.header.inside_at : self.header.inside_at + size]
         return part.reshape(len(states), len(self.sensing), len(self.traits))
 
 
 def build_setup(
-    items: Sequence[Item],
+    specs: Sequence[BodySpec],
     positions: FloatArray,
     velocities: FloatArray,
     overrides: Mapping[tuple[int, int], float],
     max_hits: int,
     continuous: bool,
 ) -> Setup:
-    """Return the setup of a world of bodies at positions, float64 [n, 2], with velocities."""
+    """Return the setup of a world.
+
+    Args:
+        specs: the bodies.
+        positions: float64 [n, 2].
+        velocities: float64 [n, 2].
+        overrides: the restitution of single pairs (a, b), a < b.
+        max_hits: of one body in one step.
+        continuous: with times of impact, not by the lecture's procedure.
+    """
     index: dict[Collider, int] = {}
-    for item in items:
-        index.setdefault(item.collider, len(index))
+    for spec in specs:
+        index.setdefault(spec.collider, len(index))
     shapes, edges = shape_table(index)
-    traits = np.zeros(len(items), Trait)
-    for trait, item in zip(traits, items, strict=True):
-        trait.collider = index[item.collider]
-        trait.inverse_mass = inverse_mass("mass", item.mass)
-        trait.restitution = item.restitution
-        trait.category = item.category
-        trait.mask = item.mask
-        trait.sensor = 0 if item.is_sensor else NO_ONE
+    traits = np.zeros(len(specs), Trait)
+    for trait, spec in zip(traits, specs, strict=True):
+        trait.collider = index[spec.collider]
+        trait.inverse_mass = inverse_mass("mass", spec.mass)
+        trait.restitution = spec.restitution
+        trait.category = spec.category
+        trait.mask = spec.mask
+        trait.sensor = 0 if spec.is_sensor else NO_ONE
     traits["home_x"], traits["home_y"] = positions.T
     moves = (traits["inverse_mass"] > 0.0) | (velocities != 0.0).any(axis=1)
     moving, sensing = np.flatnonzero(moves), np.flatnonzero(traits["sensor"] == 0)
@@ -130,10 +143,10 @@ def build_setup(
     static = np.flatnonzero(~moves)
     boundless, firsts, entered = _make_grid(header, boxes, static, reach, resident, positions)
     pairs = np.array([(*pair, e) for pair, e in sorted(overrides.items())], Override)
-    header["bodies"], header["movers"] = len(items), len(moving)
+    header["bodies"], header["movers"] = len(specs), len(moving)
     header["sensors"] = len(sensing)
     _plan_state(header, cells=len(firsts) - 1)
-    desk = _pack(
+    workspace = _pack(
         header,
         traits=traits,
         shapes=shapes,
@@ -146,14 +159,14 @@ def build_setup(
         items=entered,
         overrides=pairs,
         progress=np.zeros(1, Progress),
-        near=np.zeros(len(items), np.int64),
+        near=np.zeros(len(specs), np.int64),
         stale=np.zeros(len(moving), np.int64),
     )
-    return Setup(desk, moving, sensing, shapes, edges, traits)
+    return Setup(workspace, moving, sensing, shapes, edges, traits)
 
 
 def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
-    """Return two bodies that would have to bounce and no finite translation separates, or None."""
+    """Return two bodies that have to bounce and that no finite translation separates, or None."""
     traits, shapes = setup.traits, setup.shapes
     reach = np.array([max(-s.lower_x, -s.lower_y, s.upper_x, s.upper_y) for s in shapes])
     open_ones = np.flatnonzero(np.isinf(reach[traits["collider"]]) & (traits["sensor"] < 0))
@@ -171,7 +184,7 @@ def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
 
 
 def _is_large(reach: FloatArray, moves: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return which bodies are too large to be in one cell when they move."""
+    """Return which bodies are too large for a cell if they move, bool [n]."""
     bounded = reach[moves & np.isfinite(reach)]
     typical = float(np.median(bounded)) if len(bounded) else 0.0
     return ~(reach <= LARGE * typical)
@@ -185,7 +198,7 @@ def _make_grid(
     resident: npt.NDArray[np.bool_],
     positions: FloatArray,
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Choose the grid's cells, and enter what is static; return (boundless, firsts, items)."""
+    """Choose the grid's cells, and enter static bodies; return (boundless, firsts, items)."""
     furthest = float(reach[resident].max(initial=0.0)) * (1.0 + MARGIN)
     bounded = static[np.isfinite(boxes[static]).all(axis=1)]
     corners = np.concatenate(
@@ -199,7 +212,7 @@ def _make_grid(
         size = np.maximum(high - low, 1e-300)
         cells = max(1.0, CELLS_PER_STATIC * len(bounded) + CELLS_PER_MOVING * resident.sum())
         cell = max(2.0 * furthest, math.sqrt(size[0] / cells) * math.sqrt(size[1]))
-        # A field that is as good as a line.
+        # The field may be almost a line.
         cell = max(cell, float(size.max()) / (4.0 * cells))
         header["left"], header["bottom"], header["cell"] = low[0], low[1], cell
         header["columns"], header["rows"] = np.maximum(1, np.ceil(size / cell)).astype(int)
@@ -209,7 +222,7 @@ def _make_grid(
     covered[bounded] = 0
     counts = np.zeros(cells + 1, np.int64)
     count_cells(header, boxes, furthest, covered, counts)
-    # What lies nearly everywhere would only fill the lists.
+    # Bodies that are nearly everywhere would only fill the lists.
     wide = bounded[covered[bounded] > max(4.0, MANY_CELLS * cells)]
     if len(wide):
         covered[wide] = NO_ONE
@@ -229,7 +242,7 @@ def _plan_state(header: npt.NDArray[Any], cells: int) -> None:
     header["leaves"] = leaf_count(movers)
     header["heads"] = cells if movers > FEW_BODIES else 0
     sizes = {
-        "left_as_at": CLOCK + Motion.itemsize * movers,
+        "motions_after_step_at": CLOCK_SIZE + Motion.itemsize * movers,
         "plans_at": Motion.itemsize * movers,
         "winners_at": Plan.itemsize * movers,
         "heads_at": 8 * 2 * header["leaves"][0],
@@ -242,8 +255,8 @@ def _plan_state(header: npt.NDArray[Any], cells: int) -> None:
         header[name] = end
 
 
-def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> Bytes:
-    """Return one block: the header, and the parts whose places and lengths it tells."""
+def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> ByteArray:
+    """Return one block: the header, into which offsets and lengths are written, and the parts."""
     at = header.nbytes
     for name, part in parts.items():
         header[f"{name}_at"] = at
@@ -255,7 +268,7 @@ def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> Bytes:
 
 
 def with_query(setup: Setup, collider: Collider) -> tuple[Any, Any]:
-    """Return (shapes, edges) of a setup with one more shape, the last."""
+    """Return (shapes, edges) of a setup with one more shape at the end."""
     shape, own_edges = shape_table([collider])
     shape["first"] += len(setup.edges)
     shapes: npt.NDArray[Any] = np.concatenate([setup.shapes, shape]).view(Shape)

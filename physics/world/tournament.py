@@ -1,14 +1,13 @@
-"""Which of many plans comes first: a knock-out tournament, replayed along one path per change.
+"""Which of many plans comes first: a knock-out tournament, of which a change replays one path.
 
-``winners`` is a binary tree in an array: its second half are the leaves, the slots in order (or
--1), and every node holds the better one of its two children; node 1 the winner of all. Equal times
-go to the lower slot, so that the order never depends on history.
+``winners`` is a binary tree in an array. Its second half are the leaves: the slots in order, or -1.
+Every node holds the winner of its two children, node 1 the winner of all. Of equal times the lower
+slot wins, so that the order never depends on history.
 """
-
-from typing import Any
 
 from ..kernels import kernel
 from .clock_time import is_earlier
+from .records import Indices, Plans
 
 
 def leaf_count(players: int) -> int:
@@ -17,8 +16,8 @@ def leaf_count(players: int) -> int:
 
 
 @kernel
-def _better(plans: Any, one: int, other: int) -> int:
-    """Return the slot whose plan comes first; the left one if both come at once."""
+def _better(plans: Plans, one: int, other: int) -> int:
+    """Return the slot whose plan comes first; the left one if the times are equal."""
     if other < 0:
         return one
     left = plans[one]
@@ -29,8 +28,8 @@ def _better(plans: Any, one: int, other: int) -> int:
 
 
 @kernel
-def start_tournament(winners: Any, plans: Any) -> None:
-    """Play it from scratch."""
+def start_tournament(winners: Indices, plans: Plans) -> None:
+    """Play the whole tournament."""
     leaves = winners.shape[0] // 2
     for slot in range(leaves):
         winners[leaves + slot] = slot if slot < plans.shape[0] else -1
@@ -39,8 +38,8 @@ def start_tournament(winners: Any, plans: Any) -> None:
 
 
 @kernel
-def replay(winners: Any, plans: Any, slot: int) -> None:
-    """Play again what a changed plan took part in."""
+def replay(winners: Indices, plans: Plans, slot: int) -> None:
+    """Play those games again in which a changed plan took part."""
     node = (winners.shape[0] // 2 + slot) // 2
     while node > 0:
         winners[node] = _better(plans, winners[2 * node], winners[2 * node + 1])

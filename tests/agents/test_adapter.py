@@ -1,7 +1,7 @@
-"""The adapter against stable-baselines3's `DummyVecEnv`, Gymnasium's statistics and its contract.
+"""The adapter against stable-baselines3's `DummyVecEnv` and Gymnasium's statistics.
 
-Gymnasium's `SyncVectorEnv` of CartPole and of a small game written here are the environments, so
-that nothing depends on our own one.
+The environments are CartPole and a small game written here, in Gymnasium's `SyncVectorEnv`: nothing
+depends on our own.
 """
 
 from collections.abc import Callable
@@ -24,9 +24,9 @@ SAME_STEP = AutoresetMode.SAME_STEP
 
 
 class Walk(gym.Env[NDArray[np.float32], np.int64]):
-    """A walk on a line from a seeded start; beyond ±1 it ends, after eight steps it is cut.
+    """A walk on a line from a random place. It terminates beyond ±1, and is truncated at step 8.
 
-    Eight steps can end and be cut at once.
+    Both can happen in the same step.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 (Gymnasium's way)
@@ -62,14 +62,14 @@ def cartpole() -> gym.Env[Any, Any]:
 
 
 def adapted(make: Callable[[], gym.Env[Any, Any]], num: int, **keywords: Any) -> GymnasiumVecEnv:
-    """Return worlds whose observations are overwritten by the next step: the harder case."""
+    """Return worlds whose next step overwrites the observations: the harder case."""
     return GymnasiumVecEnv(
         SyncVectorEnv([make] * num, copy=False, autoreset_mode=SAME_STEP), **keywords
     )
 
 
 @pytest.mark.parametrize("make", [Walk, cartpole])
-def test_every_step_is_that_of_stable_baselines3s_own_vec_env(
+def test_every_step_equals_that_of_dummy_vec_env(
     make: Callable[[], gym.Env[Any, Any]],
 ) -> None:
     ours, theirs = adapted(make, 5), DummyVecEnv([make] * 5)
@@ -98,7 +98,7 @@ def test_every_step_is_that_of_stable_baselines3s_own_vec_env(
     assert cut > 10 or make is cartpole
 
 
-def test_an_end_that_is_also_cut_is_an_end() -> None:
+def test_a_step_that_terminates_and_truncates_counts_as_terminated() -> None:
     venv = adapted(Walk, 1)
     venv.seed(0)
     venv.reset()
@@ -110,7 +110,7 @@ def test_an_end_that_is_also_cut_is_an_end() -> None:
 
 
 def test_the_weights_after_training_are_those_of_training_on_dummy_vec_env() -> None:
-    """Short episodes, so that both ends and cuts (whose value is bootstrapped) occur often."""
+    """Episodes are short: many terminate, and many are truncated, where PPO adds a value."""
 
     def weights(venv: Any) -> list[NDArray[np.float32]]:
         model = PPO("MlpPolicy", venv, n_steps=64, batch_size=64, n_epochs=2, seed=4, device="cpu")
@@ -124,7 +124,7 @@ def test_the_weights_after_training_are_those_of_training_on_dummy_vec_env() -> 
 
 
 def test_episode_statistics_are_gymnasiums() -> None:
-    """Against `RecordEpisodeStatistics`, which sums in float64 as well; times are another clock."""
+    """`RecordEpisodeStatistics` sums in float64, too. Times are of another clock."""
     venv = adapted(Walk, 6)
     other = RecordEpisodeStatistics(SyncVectorEnv([Walk] * 6, autoreset_mode=SAME_STEP))
     venv.seed(11)
@@ -145,7 +145,7 @@ def test_episode_statistics_are_gymnasiums() -> None:
     assert episodes > 50
 
 
-def test_the_games_own_statistics_are_kept_and_summed_by_episode() -> None:
+def test_statistics_of_the_game_are_collected_by_episode() -> None:
     venv = adapted(Walk, 3, info_keywords=["count"], summed_keywords=["gained"])
     venv.seed(2)
     venv.reset()
@@ -166,11 +166,11 @@ def test_the_games_own_statistics_are_kept_and_summed_by_episode() -> None:
     assert episodes > 10
 
 
-def test_what_is_returned_is_never_overwritten() -> None:
-    """stable-baselines3 keeps the last observation until it has seen the next, and adds to rewards.
+def test_returned_arrays_are_never_overwritten() -> None:
+    """stable-baselines3 keeps an observation until after the next step, and adds to rewards.
 
-    With an environment that reuses its arrays, a plain reference would store the next observation
-    in place of the last one: training runs, and learns from wrong pairs.
+    If the environment reused the array, the next observation would replace the stored one: training
+    would run, and learn from wrong pairs.
     """
     venv = adapted(Walk, 4)
     venv.seed(0)
@@ -189,7 +189,7 @@ def test_what_is_returned_is_never_overwritten() -> None:
     assert rewards.flags.writeable
 
 
-def test_seeds_wait_for_the_next_reset_and_are_used_once() -> None:
+def test_seeds_hold_for_the_next_reset_only() -> None:
     venv = adapted(Walk, 3)
     assert venv.seed(5) == [5, 6, 7]
     first = venv.reset()
@@ -201,7 +201,7 @@ def test_seeds_wait_for_the_next_reset_and_are_used_once() -> None:
     np.testing.assert_array_equal(first[1], single)  # type: ignore[index]
 
 
-def test_options_go_to_all_worlds_at_the_next_reset_only() -> None:
+def test_options_hold_for_all_worlds_and_the_next_reset_only() -> None:
     venv = adapted(Walk, 2)
     venv.set_options({"shift": 100})
     assert (venv.reset()[:, 0] > 90).all()  # type: ignore[index,call-overload]
@@ -209,7 +209,7 @@ def test_options_go_to_all_worlds_at_the_next_reset_only() -> None:
 
 
 def test_each_world_can_have_options_of_its_own() -> None:
-    """As with stable-baselines3's own vector environment, seeds included."""
+    """As in stable-baselines3's own vector environment, seeds included."""
     options = [{"shift": 50}, {}, {"shift": 50}, {"shift": 80}]
     ours, theirs = adapted(Walk, 4), DummyVecEnv([Walk] * 4)
     for venv in (ours, theirs):
@@ -224,7 +224,7 @@ def test_each_world_can_have_options_of_its_own() -> None:
             np.testing.assert_array_equal(mine, other)
 
 
-def test_statistics_go_on_where_they_were() -> None:
+def test_statistics_continue_from_a_saved_state() -> None:
     venv, other = (adapted(Walk, 3, summed_keywords=["gained"]) for _ in range(2))
     untouched = venv.get_statistics()
     for each in (venv, other):
@@ -293,18 +293,18 @@ def test_attributes_and_methods_of_a_native_batch() -> None:
     assert venv.env_is_wrapped(TimeLimit) == [False] * 3
 
 
-def test_wrappers_are_found_and_monitor_is_replaced() -> None:
+def test_wrappers_are_found_and_no_monitor_is_needed() -> None:
     venv = adapted(cartpole, 2)
     assert venv.env_is_wrapped(TimeLimit) == [True, True]
     assert venv.env_is_wrapped(gym.wrappers.ClipAction) == [False, False]
     assert venv.env_is_wrapped(Monitor, indices=[1]) == [True]
-    # stable-baselines3's own evaluation would warn without a monitor, and warnings are errors.
+    # Without a monitor stable-baselines3's evaluation warns, and warnings are errors here.
     model = PPO("MlpPolicy", venv, n_steps=8, batch_size=16, device="cpu", seed=0)
     mean, _ = evaluate_policy(model, venv, n_eval_episodes=4)
     assert 1 <= float(mean) <= 30  # type: ignore[arg-type]
 
 
-def test_pictures_of_all_worlds_make_one() -> None:
+def test_pictures_of_all_worlds_are_tiled_into_one() -> None:
     venv = adapted(Walk, 4)
     venv.reset()
     venv.step(np.array([1, 1, 1, 1]))
@@ -324,7 +324,7 @@ def test_it_can_be_wrapped_by_stable_baselines3() -> None:
     assert np.isfinite(model.ep_info_buffer[0]["r"])
 
 
-def test_a_worlds_info_is_what_its_masks_say() -> None:
+def test_masks_say_which_keys_a_worlds_info_has() -> None:
     infos = {
         "score": np.array([1, 2]),
         "_score": np.array([True, False]),

@@ -6,10 +6,10 @@ from dataclasses import replace
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.agents.experiment.schema import SettingsError
+from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
-from arkanoid.agents.measure.baselines import NoOp, Policy, make_baseline
+from arkanoid.agents.measure.baselines import NoOp, make_baseline
 from arkanoid.agents.measure.comparison import (
     COLUMNS,
     as_json,
@@ -19,7 +19,8 @@ from arkanoid.agents.measure.comparison import (
     summarise,
 )
 from arkanoid.agents.measure.episodes import play_episodes
-from arkanoid.agents.measure.suites import Start, find_starts, make_suites
+from arkanoid.agents.measure.policy import Policy
+from arkanoid.agents.measure.suites import EpisodeStart, find_starts, make_suites
 from scipy import stats
 
 SPACE = gym.spaces.Discrete(3)
@@ -29,7 +30,7 @@ def follower(experiment: Experiment) -> Policy:
     return make_baseline("ball-follower", make_worlds(experiment, 1), seed=0)
 
 
-def test_an_episode_depends_on_its_seed_alone() -> None:
+def test_an_episode_depends_only_on_its_seed() -> None:
     """Against single environments, played one after the other by Gymnasium's own rules."""
     experiment = load_experiment("quick", [("env.lives", "1")])
     policy = follower(experiment)
@@ -53,11 +54,11 @@ def test_an_episode_depends_on_its_seed_alone() -> None:
             assert played[key][index, 0] == info[key]
 
 
-def test_a_level_is_played_until_it_is_cleared_whatever_else_is_played_beside_it() -> None:
+def test_a_level_is_played_until_it_is_cleared_whatever_other_worlds_play() -> None:
     experiment = load_experiment("quick")
     starts = find_starts(experiment, ["comb", "seeds:3-3", "islands"])
     policy = follower(experiment)
-    together = play_episodes(make_worlds(experiment, 9), policy, 40, starts, whole=False)
+    together = play_episodes(make_worlds(experiment, 9), policy, 40, starts, whole_games=False)
     assert together["cleared"].shape == (3, 3)
     single = gym.make("ArkanoidLite-v0", **experiment.env)
     for level, start in enumerate(starts):
@@ -80,16 +81,18 @@ def test_an_earlier_evaluation_in_the_same_worlds_leaves_nothing_behind() -> Non
     worlds = make_worlds(experiment, 4)
     policy = NoOp(SPACE)
     first = play_episodes(worlds, policy, seed=1)
-    play_episodes(worlds, policy, 1, find_starts(experiment, ["seeds:3-4"]), whole=False)
+    play_episodes(worlds, policy, 1, find_starts(experiment, ["seeds:3-4"]), whole_games=False)
     again = play_episodes(worlds, policy, seed=1)
     for name, values in first.items():
         np.testing.assert_array_equal(values, again[name])
 
 
-def test_levels_and_worlds_must_go_together() -> None:
+def test_each_level_needs_the_same_number_of_worlds() -> None:
     experiment = load_experiment("quick")
     with pytest.raises(ValueError, match="3 worlds are not the same number for each of 2 levels"):
-        play_episodes(make_worlds(experiment, 3), NoOp(SPACE), 0, [Start("a"), Start("b")])
+        play_episodes(
+            make_worlds(experiment, 3), NoOp(SPACE), 0, [EpisodeStart("a"), EpisodeStart("b")]
+        )
 
 
 def test_suites_keep_training_test_and_named_levels_apart() -> None:
@@ -109,6 +112,17 @@ def test_suites_keep_training_test_and_named_levels_apart() -> None:
     assert full["named"].starts[-1].name == "warden"
 
 
+def test_named_stands_for_all_named_rounds_of_the_game() -> None:
+    """Configs once listed the twelve names for their validation."""
+    lite, full = load_experiment("lite"), load_experiment("full")
+    assert lite.validation.levels == ("named",)
+    assert len(find_starts(lite, lite.validation.levels)) == 12
+    assert [start.name for start in find_starts(full, ["named", "seeds:3-3"])][-2:] == [
+        "warden",
+        "3 at 0.50",
+    ]
+
+
 def test_a_fixed_difficulty_is_that_of_all_generated_levels() -> None:
     experiment = load_experiment("generalise", [("env.difficulty", "0.3")])
     starts = find_starts(experiment, "seeds:10-12")
@@ -117,8 +131,8 @@ def test_a_fixed_difficulty_is_that_of_all_generated_levels() -> None:
     ]
 
 
-@pytest.mark.parametrize("level", ["no_such_round", "seeds:9-3"])
-def test_a_level_that_is_none_is_a_settings_error(level: str) -> None:
+@pytest.mark.parametrize("level", ["no_such_round", "seeds:9-3", "warden"])
+def test_a_level_that_the_game_does_not_have_is_a_settings_error(level: str) -> None:
     with pytest.raises(SettingsError, match=level):
         find_starts(load_experiment("quick"), level)
 
@@ -148,7 +162,7 @@ def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
     assert comparison["named"]["agent"]["score"].shape == (2, 2, 13)
     assert comparison["named"]["planner"]["score"].shape == (1, 1, 13)
     assert "named: planner" in told
-    # The agent's first model is the ball-follower, its second one only watches.
+    # The agent's first model is the ball-follower, its second one does nothing.
     for suite in comparison.values():
         for name in COLUMNS:
             for model, baseline in enumerate(("ball-follower", "no-op")):
@@ -158,11 +172,11 @@ def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
     assert named["levels"][0] == "ripple"
     score = named["policies"]["agent"]["summary"]["score"]
     samples = comparison["named"]["agent"]["score"]
-    assert score["mean"]["mean"] == pytest.approx(samples.mean())
-    assert score["mean"]["low"] <= score["mean"]["mean"] <= score["mean"]["high"]
+    assert score["mean"]["estimate"] == pytest.approx(samples.mean())
+    assert score["mean"]["low"] <= score["mean"]["estimate"] <= score["mean"]["high"]
     trimmed = stats.trim_mean(samples.mean(axis=1), 0.25, axis=None)
-    assert score["iqm"]["mean"] == pytest.approx(float(trimmed))
-    of_level = named["policies"]["agent"]["levels"]["ripple"]["score"]["mean"]
+    assert score["iqm"]["estimate"] == pytest.approx(float(trimmed))
+    of_level = named["policies"]["agent"]["levels"]["ripple"]["score"]["estimate"]
     assert of_level == pytest.approx(samples[:, :, 0].mean())
     text = as_tables(small, comparison)
     assert "named: 13 levels, 2 episodes of each; interquartile mean" in text
@@ -170,12 +184,12 @@ def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
         assert name in text
 
 
-def test_of_several_models_the_interval_is_over_the_models() -> None:
-    """Two models that always do the same, one 0 and one 1: their mean is anywhere between."""
+def test_several_models_are_resampled_instead_of_their_episodes() -> None:
+    """One model always gets 0, the other 1: the mean of a resample is anything between."""
     samples = np.stack([np.zeros((50, 1)), np.ones((50, 1))])
     summary = summarise(samples)["mean"]
-    assert (summary.low, summary.mean, summary.high) == (0, 0.5, 1)
+    assert (summary.low, summary.estimate, summary.high) == (0, 0.5, 1)
     assert level_interval(samples, 0) == summary
-    # Of one model with the same hundred episodes it is over the episodes.
+    # One model with the same hundred episodes has its episodes resampled.
     one = summarise(samples.reshape(1, 100, 1))["mean"]
     assert 0.35 < one.low < 0.5 < one.high < 0.65

@@ -21,7 +21,7 @@ def test_of_zeros_and_ones_it_is_the_binomial_distributions(ones: int, count: in
     samples[:ones] = 1
     interval = bootstrap_interval(samples)
     mean = ones / count
-    assert interval.mean == mean
+    assert interval.estimate == mean
     expected = stats.binom.ppf([0.025, 0.975], count, mean) / count
     np.testing.assert_allclose([interval.low, interval.high], expected, rtol=1e-12)
 
@@ -89,7 +89,7 @@ def test_strata_are_resampled_each_on_its_own() -> None:
     samples = random.normal(size=(400, 5)) + np.array([0, 100, 200, 300, 400])
     interval = stratified_interval(samples, mean)
     error = np.sqrt(samples.var(axis=0).mean() / samples.size)
-    assert interval.mean == pytest.approx(samples.mean())
+    assert interval.estimate == pytest.approx(samples.mean())
     assert abs(interval.low - (samples.mean() - 1.96 * error)) < 5 * 0.06 * error
     assert abs(interval.high - (samples.mean() + 1.96 * error)) < 5 * 0.06 * error
 
@@ -108,7 +108,7 @@ def test_the_stratified_interval_of_the_interquartile_mean() -> None:
     low, high = np.quantile(drawn, [0.025, 0.975])
     interval = stratified_interval(samples, interquartile_mean)
     tolerance = 5 * 0.06 * np.sqrt(2) * np.std(drawn)
-    assert interval.mean == pytest.approx(stats.trim_mean(samples, 0.25, axis=None))
+    assert interval.estimate == pytest.approx(stats.trim_mean(samples, 0.25, axis=None))
     assert abs(interval.low - low) < tolerance
     assert abs(interval.high - high) < tolerance
 

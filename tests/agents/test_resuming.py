@@ -1,23 +1,23 @@
-"""Runs that are killed, stopped, resumed and reproduced: the weights are the same, bit for bit."""
+"""Runs that are killed, stopped, resumed and reproduced have the same weights, bit for bit."""
 
 import json
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.experiment.files import write_whole
+from arkanoid.agents.experiment.files import write_atomically
 from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.learn.curves import STEP, CurveWriter, read_curve
 from arkanoid.agents.learn.training import train
+from helpers.processes import run_arkanoid, start_arkanoid
 
-# All that has a state is in use: a schedule, a curriculum, validation, generated levels, sticky
-# actions; episodes are short, so that many end, some by being cut.
+# Everything that has a state is in use: a schedule, a curriculum, validation, generated levels and
+# sticky actions. Episodes are short: many end, and some are truncated.
 RUN = {
     "training.timesteps": "12_288",
     "training.worlds": "16",
@@ -35,7 +35,7 @@ RUN = {
     "validation.episodes": "4",
     "evaluation.episodes": "2",
     "evaluation.baselines": "[]",
-    "evaluation.clip_seconds": "0.5",
+    "evaluation.film_seconds": "0.5",
     "evaluation.deterministic": "false",
 }
 # What differs from run to run: the clock.
@@ -47,17 +47,8 @@ def words(output: Path, **changes: str) -> list[str]:
     return ["train", "quick", *(f"--{key}={value}" for key, value in settings.items())]
 
 
-def start(arguments: list[str]) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [sys.executable, "-m", "arkanoid", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
 def stop_at(process: subprocess.Popen[str], output: Path, timesteps: int, how: int) -> RunFolder:
-    """Send a signal to a training that has come so far, and wait for its end."""
+    """Send a signal to a training after so many decisions, and wait for its end."""
     deadline = time.monotonic() + 120
     while not any(
         read_curve(path)[-1:] and read_curve(path)[-1][STEP] >= timesteps
@@ -85,50 +76,48 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
     return RunFolder(path)
 
 
-def test_a_run_that_is_killed_and_resumed_is_the_run_that_was_not(
+def test_a_killed_and_resumed_run_equals_an_undisturbed_one(
     whole: RunFolder, tmp_path: Path
 ) -> None:
-    killed = stop_at(start(words(tmp_path)), tmp_path, 5120, signal.SIGKILL)
-    assert killed.about()["outcome"] == "unfinished"
-    assert "weights" not in killed.about()
-    # Once nothing was known of a session that was killed, and reports left its time out.
-    (session,) = killed.about()["sessions"]
+    killed = stop_at(start_arkanoid(*words(tmp_path)), tmp_path, 5120, signal.SIGKILL)
+    assert killed.read_notes()["outcome"] == "unfinished"
+    assert "weights" not in killed.read_notes()
+    # Reports left out the time of a session that was killed, because nothing was noted about it.
+    (session,) = killed.read_notes()["sessions"]
     assert session["from"] == 0
     assert session["to"] >= 4096
     assert session["seconds"] > 0
-    resumed = start(["train", "--resume", str(killed.path)])
-    _, err = resumed.communicate(timeout=120)
-    assert resumed.returncode == 0, err
-    assert killed.about()["outcome"] == "finished"
-    assert killed.about()["weights"] == whole.about()["weights"]
-    first, second = killed.about()["sessions"]
+    run_arkanoid("train", "--resume", killed.path)
+    assert killed.read_notes()["outcome"] == "finished"
+    assert killed.read_notes()["weights"] == whole.read_notes()["weights"]
+    first, second = killed.read_notes()["sessions"]
     assert (first["from"], first["to"]) == (0, second["from"])
     assert second["to"] == 12_288
-    # So is all that was measured on the way: curves and the best model.
+    # The curves and the best model are the same, too.
     assert curve(killed) == curve(whole)
     expected = json.loads(whole.evaluation.read_text())["suites"]
     assert json.loads(killed.evaluation.read_text())["suites"] == expected
 
 
-def test_a_run_that_is_stopped_and_resumed_is_the_run_that_was_not(
+def test_a_stopped_and_resumed_run_equals_an_undisturbed_one(
     whole: RunFolder, tmp_path: Path
 ) -> None:
-    """Stopped in the middle of a rollout, which the resumed run plays again from its beginning."""
-    stopped = stop_at(start(words(tmp_path)), tmp_path, 3072, signal.SIGINT)
-    about = stopped.about()
+    """It stops in the middle of a rollout, which the resumed run plays from its beginning."""
+    stopped = stop_at(start_arkanoid(*words(tmp_path)), tmp_path, 3072, signal.SIGINT)
+    about = stopped.read_notes()
     assert about["outcome"] == "interrupted"
     assert about["weights"] is None
     assert about["timesteps"] % 1024 == 0
     assert cli.main(["evaluate", str(stopped.path)]) == 0
     assert cli.main(["train", "--resume", str(stopped.path)]) == 0
-    about = stopped.about()
-    assert about["weights"] == whole.about()["weights"]
+    about = stopped.read_notes()
+    assert about["weights"] == whole.read_notes()["weights"]
     first, second = about["sessions"]
     assert (first["from"], first["to"]) == (0, second["from"])
     assert second["to"] == 12_288
 
 
-def test_a_run_that_has_ended_is_not_resumed(
+def test_a_finished_run_cannot_be_resumed(
     whole: RunFolder, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["train", "--resume", str(whole.path)]) == 2
@@ -139,7 +128,7 @@ def test_a_run_that_has_ended_is_not_resumed(
     ("content", "message"),
     [(None, "no checkpoint"), (b"PK no", "cannot be read")],
 )
-def test_a_checkpoint_that_is_missing_or_damaged_is_named(
+def test_the_error_names_a_missing_or_damaged_checkpoint(
     content: bytes | None, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     overrides = [*RUN.items(), ("output", str(tmp_path))]
@@ -157,25 +146,25 @@ def test_a_run_is_reproduced(whole: RunFolder, capsys: pytest.CaptureFixture[str
     assert "the same, bit for bit" in capsys.readouterr().out
 
 
-def test_a_run_that_cannot_be_reproduced_says_what_is_different(
+def test_a_failed_reproduction_says_what_is_different(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     overrides = [*RUN.items(), ("output", str(tmp_path)), ("training.timesteps", "1024")]
     experiment = load_experiment("quick", overrides)
     run = RunFolder.create(experiment)
     train(experiment, run)
-    versions = {**run.about()["versions"], "torch": "1.0"}
-    run.note(weights="0" * 64, versions=versions)
+    versions = {**run.read_notes()["versions"], "torch": "1.0"}
+    run.add_notes(weights="0" * 64, versions=versions)
     assert cli.main(["reproduce", str(run.path)]) == 1
     out = capsys.readouterr().out
     assert "they differ" in out
     assert "versions.torch: '1.0' there" in out
-    run.note(weights=None)
+    run.add_notes(weights=None)
     assert cli.main(["reproduce", str(run.path)]) == 2
     assert "has not ended" in capsys.readouterr().err
 
 
-def test_curves_go_on_from_the_step_of_the_checkpoint(tmp_path: Path) -> None:
+def test_curves_continue_at_the_checkpoints_step(tmp_path: Path) -> None:
     path = tmp_path / "curve.jsonl"
     writer = CurveWriter(path)
     for step in (10, 20, 30):
@@ -196,10 +185,10 @@ def test_curves_go_on_from_the_step_of_the_checkpoint(tmp_path: Path) -> None:
     assert read_curve(path) == []
 
 
-def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+def test_files_are_written_atomically(tmp_path: Path) -> None:
     path = tmp_path / "file"
-    write_whole(path, b"first")
+    write_atomically(path, b"first")
     (tmp_path / "unfinished-file").write_bytes(b"left by a killed process")
-    write_whole(path, b"second")
+    write_atomically(path, b"second")
     assert path.read_bytes() == b"second"
     assert list(tmp_path.iterdir()) == [path]

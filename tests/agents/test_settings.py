@@ -1,12 +1,29 @@
-import subprocess
-import sys
-import tomllib
-from dataclasses import FrozenInstanceError, replace
-from pathlib import Path
+"""Settings: what is read, what is refused with which words, and the resolved configuration."""
 
+import tomllib
+from collections.abc import Iterator
+from dataclasses import FrozenInstanceError, replace
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
 import pytest
-from arkanoid.agents.experiment.schema import SettingsError, leaves, read_settings, to_toml
-from arkanoid.agents.experiment.settings import Experiment, Ppo, load_experiment, packaged_configs
+from arkanoid.agents import cli
+from arkanoid.agents.experiment.errors import SettingsError
+from arkanoid.agents.experiment.reading import (
+    describe_settings,
+    packaged_configs,
+    read_settings,
+    to_toml,
+)
+from arkanoid.agents.experiment.settings import Experiment, Ppo, load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds, native
+from arkanoid.agents.measure.suites import make_suites
+from arkanoid.envs import ArkanoidVectorEnv
+from arkanoid.envs.config import Config
+from arkanoid.envs.registration import BATCH_KEYWORDS, resolve_config
+from helpers.processes import run_program
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -34,7 +51,7 @@ def test_a_file_sets_what_it_names_and_nothing_else(tmp_path: Path) -> None:
         ppo=replace(default.ppo, gamma=1.0),
         network=replace(default.network, hidden=(8,)),
     )
-    # An integer is a number where one is asked for, and becomes one.
+    # Where a number is expected, an integer becomes one.
     assert type(experiment.ppo.gamma) is float
 
 
@@ -52,6 +69,7 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
             ("name", "2024"),
             ("ppo.learning_rate", "1e-3"),
             ("network.hidden", "[16, 16]"),
+            ("network.activation", "relu"),
             ("evaluation.deterministic", "false"),
             ("env.lives", "2"),
             ("env.reward", "score"),
@@ -62,6 +80,7 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
     assert experiment.name == "2024"
     assert experiment.ppo.learning_rate == 1e-3
     assert experiment.network.hidden == (16, 16)
+    assert experiment.network.activation == "relu"
     assert experiment.evaluation.deterministic is False
     assert experiment.env == {
         "lives": 2,
@@ -86,6 +105,8 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
         ("[ppo]\nn_steps = 0", ["'ppo.n_steps'", "at least 1", "0"]),
         ("[ppo]\nlearning_rate = 0", ["'ppo.learning_rate'", "a number, above 0"]),
         ("[ppo]\nlearning_rate = nan", ["'ppo.learning_rate'", "a number", "nan"]),
+        ("[ppo]\nlearning_rate = true", ["'ppo.learning_rate'", "a number", "True"]),
+        ("[ppo]\nvf_coef = inf", ["'ppo.vf_coef'", "a number", "inf"]),
         ("[ppo]\ngamma = 1.5", ["'ppo.gamma'", "at least 0 and at most 1", "1.5"]),
         ("name = 3", ["'name'", "a text", "3"]),
         ('name = "a/b"', ["'name'", "'a/b'"]),
@@ -113,6 +134,11 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
         ('[network]\nfeatures = "planes"', ["'network.features'", "'grid'", "'vector'"]),
         ('env = {observation = "rgb"}\nnetwork = {features = "lattice"}', ["'rgb'", "'vector'"]),
         ("[network]\nchannels = []", ["'network.channels'", "at least one"]),
+        ("[env]\nlivs = 3", ["Arkanoid-v0 refuses the [env] table", "'livs'", "'lives'"]),
+        ("[env]\nlives = 0", ["Arkanoid-v0 refuses the [env] table", "lives", "got 0"]),
+        ('env_id = "Arkanod-v0"', ["'env_id'", "'Arkanod-v0'"]),
+        ('env_id = "no_such_module:X-v0"', ["'env_id'", "no_such_module"]),
+        ('env_id = "CartPole-v1"', ["CartPole-v1", "not an ArkanoidVectorEnv"]),
     ],
 )
 def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(
@@ -123,6 +149,7 @@ def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(
         load_experiment(path)
     message = str(caught.value)
     assert message.startswith(path)
+    assert "\n" not in message
     for word in words:
         assert word in message
 
@@ -133,9 +160,11 @@ def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(
         ("ppo.learning_rat", "1", ["'ppo.learning_rat'", "'ppo.learning_rate'"]),
         ("worlds", "1", ["'worlds'", "'training.worlds'"]),
         ("ppo", "1", ["unknown key 'ppo'"]),
+        ("seed.x", "1", ["unknown key 'seed.x'"]),
         ("ppo.n_steps", "many", ["'ppo.n_steps'", "an integer, at least 1", "'many'"]),
         ("ppo.n_steps", "1\nseed = 2", ["'ppo.n_steps'", "an integer"]),
         ("ppo.batch_size", "1000", ["'ppo.batch_size' (1000)"]),
+        ("env.lives", "none", ["lives must be an integer", "'none'"]),
     ],
 )
 def test_a_wrong_override_is_blamed_on_the_command_line(
@@ -156,7 +185,7 @@ def test_a_missing_file_lists_the_packaged_configs() -> None:
         assert name in str(caught.value)
 
 
-def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / FILE).write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SettingsError, match="not a TOML file"):
         load_experiment(str(tmp_path / FILE))
@@ -168,54 +197,135 @@ def test_every_packaged_config_is_valid(name: str) -> None:
 
 
 def test_a_setting_made_in_python_is_checked_too() -> None:
-    with pytest.raises(SettingsError, match="'gamma' must be a number, at least 0 and at most 1"):
+    with pytest.raises(ValueError, match=r"gamma\n.*less than or equal to 1"):
         Ppo(gamma=2.0)
+    with pytest.raises(ValueError, match=r"'ppo\.batch_size'"):
+        replace(Experiment(), ppo=Ppo(batch_size=1000))
 
 
 def test_every_setting_says_what_it_means() -> None:
-    assert all(leaf.meaning for leaf in leaves(Experiment) if not leaf.is_table)
+    settings = describe_settings(Experiment)
+    assert all(setting.meaning and setting.expected for setting in settings.values())
+    assert settings["ppo.gamma"].default == Ppo().gamma
 
 
 numbers = st.floats(1e-12, 1, allow_subnormal=False)
 counts = st.integers(1, 10**9)
 # TOML has no surrogates.
-texts = st.text(st.characters(exclude_categories=["Cs"]))
-toml_values = st.recursive(
-    st.booleans() | st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=False) | texts,
-    lambda values: st.lists(values, max_size=3) | st.dictionaries(texts, values, max_size=3),
-    max_leaves=5,
-)
+texts = st.text(st.characters(exclude_categories=["Cs"]), min_size=1)
 
 
 @given(
     seed=st.integers(0, 2**32 - 1),
-    output=texts.filter(bool),
-    env=st.dictionaries(texts, toml_values, max_size=4),
+    output=texts,
+    levels=st.lists(texts, min_size=1, max_size=3),
+    sticky=st.floats(0, 1),
     gamma=numbers,
     hidden=st.lists(counts, max_size=3),
 )
 def test_written_settings_are_read_back_equal(
-    seed: int, output: str, env: dict[str, object], gamma: float, hidden: list[int]
+    seed: int, output: str, levels: list[str], sticky: float, gamma: float, hidden: list[int]
 ) -> None:
     default = Experiment()
     experiment = replace(
         default,
         seed=seed,
         output=output,
-        env=env,
+        env={"levels": levels, "sticky_action": sticky, "enemies": False},
         ppo=replace(default.ppo, gamma=gamma),
         network=replace(default.network, hidden=tuple(hidden)),
     )
     assert read_settings(Experiment, tomllib.loads(to_toml(experiment)), "here") == experiment
 
 
-def test_settings_are_read_without_torch(tmp_path: Path) -> None:
-    path = write(tmp_path, "[ppo]\ngama = 1")
-    program = (
-        "import sys; from arkanoid.agents.cli import main; "
-        f"status = main(['train', {path!r}]); "
-        "assert status == 2; assert not {'torch', 'stable_baselines3'} & set(sys.modules)"
+MY_GAME = "MyLite-v0"
+MY_DEFAULTS = {"enemies": False, "capsules": False, "frame_skip": 2}
+
+
+class MyVectorEnv(ArkanoidVectorEnv):
+    """A user's own class."""
+
+
+@pytest.fixture(params=["arkanoid.envs.vector_env:ArkanoidVectorEnv", MyVectorEnv])
+def my_game(request: pytest.FixtureRequest) -> Iterator[str]:
+    """An id of a user's own, with defaults that are not ours."""
+    gym.register(
+        MY_GAME,
+        entry_point="arkanoid.envs.arkanoid_env:ArkanoidEnv",
+        vector_entry_point=request.param,
+        kwargs=MY_DEFAULTS,
     )
-    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert result.returncode == 0, result.stderr
-    assert "'ppo.gamma'" in result.stderr
+    yield MY_GAME
+    del gym.registry[MY_GAME]
+
+
+def test_an_experiment_knows_the_defaults_of_a_users_own_id(my_game: str) -> None:
+    """Agents had their own copies of the environment's defaults.
+
+    The suite ``named`` then asked for the boss in a game without enemies, and evaluating ended in
+    a traceback.
+    """
+    suites = ("evaluation.suites", '["named"]')
+    experiment = load_experiment("quick", [("env_id", my_game), ("env.lives", "5"), suites])
+    assert experiment.config == Config(
+        enemies=False, capsules=False, frame_skip=4, lives=5, life_penalty=1.0
+    )
+    names = [start.name for start in make_suites(experiment)["named"].starts]
+    assert len(names) == 12
+    assert "warden" not in names
+    worlds = make_worlds(experiment, 1)
+    assert native(worlds).config == experiment.config
+    for name in names:
+        worlds.reset(options={"level": name})
+
+
+def test_without_a_native_vector_environment_there_is_no_training() -> None:
+    gym.register("Single-v0", entry_point="arkanoid.envs.arkanoid_env:ArkanoidEnv")
+    try:
+        with pytest.raises(SettingsError, match="vector_entry_point of Single-v0"):
+            load_experiment("quick", [("env_id", "Single-v0")])
+    finally:
+        del gym.registry["Single-v0"]
+
+
+@pytest.mark.parametrize("env_id", ["Arkanoid-v0", "ArkanoidLite-v0", "arkanoid:ArkanoidLite-v0"])
+def test_a_resolved_configuration_is_that_of_the_environment(env_id: str) -> None:
+    keywords: dict[str, Any] = {"lives": 2, "threads": 1, "levels": "seeds:3-5"}
+    worlds = gym.make_vec(env_id, 1, "vector_entry_point", **keywords)
+    assert resolve_config(env_id, keywords) == worlds.unwrapped.config  # type: ignore[attr-defined]
+
+
+def test_keywords_of_the_batch_are_no_part_of_a_configuration() -> None:
+    """`BATCH_KEYWORDS` is a list by hand, because the constructor's module is slow to import."""
+    own = set(signature(ArkanoidVectorEnv).parameters) - {"num_envs", "keywords"}
+    assert own == set(BATCH_KEYWORDS)
+
+
+def test_settings_are_checked_without_torch_and_kernels(tmp_path: Path) -> None:
+    path = write(tmp_path, "[env]\nlivs = 1")
+    done = run_program(
+        "import sys; from arkanoid.agents.cli import main\n"
+        f"assert main(['train', {path!r}]) == 2\n"
+        "assert not {'torch', 'stable_baselines3', 'numba'} & set(sys.modules)"
+    )
+    assert "'lives'" in done.stderr
+
+
+def test_playing_by_hand_needs_no_package_for_training() -> None:
+    """Neither does the help that lists all commands, nor that of the game's own commands."""
+    run_program(
+        "import sys; sys.modules['pydantic'] = sys.modules['tomli_w'] = None\n"
+        "from arkanoid.agents.cli import main\n"
+        "assert main(['levels', 'ripple']) == 0\n"
+        "for words in (['--help'], ['play', '--help'], ['replay', '--help'], ['levels', '-h']):\n"
+        "    try: main(words)\n"
+        "    except SystemExit as stop: assert stop.code == 0\n"
+    )
+
+
+def test_every_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> None:
+    for name, summary in cli.COMMANDS.items():
+        with pytest.raises(SystemExit) as stop:
+            cli.main([name, "--help"])
+        assert stop.value.code == 0
+        assert summary in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Clips, the window, plots and reports of trained agents."""
+"""Films, the window, plots and reports of trained agents."""
 
 import json
 import os
@@ -6,24 +6,24 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
-import imageio.v3 as iio
 import numpy as np
 import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.commands.evaluate import group_by_experiment
+from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.provenance import weights_hash
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
-from arkanoid.agents.experiment.schema import SettingsError
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn.curves import STEP
 from arkanoid.agents.learn.training import train
 from arkanoid.agents.measure.baselines import make_baseline
 from arkanoid.agents.measure.episodes import play_episodes
-from arkanoid.agents.measure.suites import find_starts
-from arkanoid.agents.show.clips import can_be_smooth, frame_rate, play_frames
-from arkanoid.agents.show.page import Code, Heading, Picture, Table, Text, as_html, as_markdown
+from arkanoid.agents.measure.suites import WHOLE_GAMES, find_starts
+from arkanoid.agents.show.frames import can_be_smooth, frame_rate, play_frames
+from arkanoid.agents.show.page import as_html, code, escape, table, write_page
 from arkanoid.agents.show.plots import mean_curve
 from imageio_ffmpeg import count_frames_and_secs
 from PIL import Image
@@ -32,7 +32,7 @@ from stable_baselines3 import PPO
 SMALL = [("training.timesteps", "1024"), ("training.worlds", "8"), ("ppo.n_steps", "64")]
 SMALL += [("ppo.batch_size", "256"), ("evaluation.episodes", "2"), ("env.max_decisions", "200")]
 SMALL += [("evaluation.level_episodes", "1"), ("evaluation.planner_episodes", "1")]
-SMALL += [("evaluation.suites", '["games", "named"]'), ("evaluation.clip_seconds", "1")]
+SMALL += [("evaluation.suites", '["games", "named"]'), ("evaluation.film_seconds", "1")]
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +53,11 @@ def test_a_game_shown_tick_by_tick_is_the_game_that_is_evaluated() -> None:
     worlds = make_worlds(experiment, 1)
     policy = make_baseline("ball-follower", worlds, 0)
     played = play_episodes(worlds, policy, 77)
-    frames = {smooth: list(play_frames(experiment, policy, None, smooth)) for smooth in (0, 1)}
+    frames = {
+        smooth: list(play_frames(experiment, policy, smooth=smooth)) for smooth in (False, True)
+    }
     decisions = int(played["steps"][0, 0])
-    # The last picture of a game that is over is that before its end.
+    # The last picture shows the game before the step that ends it.
     assert len(frames[0]) == decisions
     assert 4 * decisions - 4 < len(frames[1]) <= 4 * decisions
     for decision, frame in enumerate(frames[0]):
@@ -65,39 +67,39 @@ def test_a_game_shown_tick_by_tick_is_the_game_that_is_evaluated() -> None:
     assert (frame_rate(experiment, False), frame_rate(experiment, True)) == (15, 60)
 
 
-def test_a_stack_of_pictures_is_not_shown_tick_by_tick() -> None:
+def test_stacked_pictures_and_sticky_actions_are_not_shown_tick_by_tick() -> None:
     stacked = [("env.observation", "rgb"), ("env.stack", "2"), ("network.features", "auto")]
     assert not can_be_smooth(load_experiment("quick", stacked))
     assert not can_be_smooth(load_experiment("quick", [("env.sticky_action", "0.1")]))
     assert can_be_smooth(load_experiment("quick"))
 
 
-def test_a_clip_begins_on_the_level_that_is_asked_for() -> None:
+def test_a_film_begins_on_the_level_that_is_asked_for() -> None:
     experiment = load_experiment("quick")
     policy = make_baseline("no-op", make_worlds(experiment, 1), 0)
     (start,) = find_starts(experiment, "comb")
-    first, other = (next(play_frames(experiment, policy, s)) for s in (None, start))
+    first, other = (next(play_frames(experiment, policy, s)) for s in (WHOLE_GAMES, start))
     assert (first.round, other.round) == (1, 6)
     assert (first.picture != other.picture).any()
 
 
 @pytest.mark.parametrize(("name", "rate"), [("x.gif", 15), ("x.mp4", 60)])
-def test_record_writes_a_clip_of_so_many_seconds(
+def test_a_film_has_the_length_that_is_asked_for(
     runs: list[str], tmp_path: Path, name: str, rate: int
 ) -> None:
     out = tmp_path / name
-    assert cli.main(["record", runs[0], str(out), "--seconds", "2", "--level", "moat"]) == 0
+    assert cli.main(["film", runs[0], str(out), "--seconds", "2", "--level", "moat"]) == 0
     if name.endswith(".mp4"):
         assert count_frames_and_secs(str(out)) == (2 * rate, pytest.approx(2))
         return
-    # A GIF shows equal pictures as one that lasts longer.
-    with Image.open(out) as clip:
-        lasting = []
-        for index in range(clip.n_frames):  # type: ignore[attr-defined]
-            clip.seek(index)
-            lasting.append(clip.info["duration"])
-    assert sum(lasting) == pytest.approx(2000, abs=10)
-    assert len(lasting) > 3
+    # A GIF joins equal pictures into one that lasts longer.
+    with Image.open(out) as film:
+        durations = []
+        for index in range(film.n_frames):  # type: ignore[attr-defined]
+            film.seek(index)
+            durations.append(film.info["duration"])
+    assert sum(durations) == pytest.approx(2000, abs=10)
+    assert len(durations) > 3
 
 
 @pytest.mark.parametrize(
@@ -106,13 +108,14 @@ def test_record_writes_a_clip_of_so_many_seconds(
         (["x.avi"], "x.avi"),
         (["x.gif", "--seconds", "-1"], "--seconds"),
         (["x.gif", "--level", "no_such"], "no_such"),
+        (["x.gif", "--level", "warden"], "'warden' has the boss"),
         (["no_such_folder/x.gif"], "no_such_folder"),
     ],
 )
-def test_a_clip_that_cannot_be_written_is_a_mistake(
+def test_a_film_that_cannot_be_made_is_a_mistake(
     runs: list[str], arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert cli.main(["record", runs[0], *arguments]) == 2
+    assert cli.main(["film", runs[0], *arguments]) == 2
     assert word in capsys.readouterr().err
 
 
@@ -170,19 +173,20 @@ def test_evaluate_draws_plots(runs: list[str], tmp_path: Path) -> None:
         "named-levels.png",
     }
     for path in folder.iterdir():
-        picture = iio.imread(path)
+        picture = np.asarray(Image.open(path))
         assert picture.ndim == 3
         assert picture.std() > 1
 
 
 class Elements(HTMLParser):
-    """Counts elements, notes what pictures refer to, and that all is closed."""
+    """Notes elements, their sources and the text, and checks that each element is closed."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.tags: list[str] = []
         self.sources: list[str] = []
         self.open: list[str] = []
+        self.text = ""
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -194,6 +198,9 @@ class Elements(HTMLParser):
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag
 
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
 
 def test_a_report_is_one_page_that_needs_no_other_file(runs: list[str], tmp_path: Path) -> None:
     out = tmp_path / "report.html"
@@ -201,17 +208,20 @@ def test_a_report_is_one_page_that_needs_no_other_file(runs: list[str], tmp_path
     text = out.read_text(encoding="utf-8")
     page = Elements(text)
     assert page.open == []
-    # Curves, policies of both suites, levels of the named one, and the clip.
+    # Curves, policies of both suites, levels of the named one, and the film.
     assert page.tags.count("img") == 5
     assert all(source.startswith("data:image/") for source in page.sources)
     assert "http" not in text
+    assert page.tags.count("table") == 7
     for word in ("switchback", "planner", "interquartile", "learning_rate = 0.002", "2 training"):
         assert word in text
     for run in runs:
-        assert RunFolder(Path(run)).path.name in text
+        assert Path(run).name in page.text
 
 
-def test_a_report_as_markdown_has_its_pictures_beside_it(runs: list[str], tmp_path: Path) -> None:
+def test_a_report_as_markdown_has_its_pictures_in_a_folder_beside_it(
+    runs: list[str], tmp_path: Path
+) -> None:
     out = tmp_path / "report.md"
     arguments = ["--evaluation.suites", '["games"]', "--evaluation.baselines", '["no-op"]']
     assert cli.main(["report", runs[0], "--out", str(out), *arguments]) == 0
@@ -221,21 +231,61 @@ def test_a_report_as_markdown_has_its_pictures_beside_it(runs: list[str], tmp_pa
         assert (tmp_path / name).stat().st_size > 1000
 
 
-def test_a_page_escapes_what_it_shows(tmp_path: Path) -> None:
-    parts = [
-        Heading("a < b", 1),
-        Text("x & y"),
-        Code("<tag>"),
-        Table((("head", "<1>"), ("row", "2"))),
-        Picture("p.png", b"bytes", 'say "hi"'),
-    ]
-    text = as_html(parts)
-    assert "<tag>" not in text
-    assert "a &lt; b" in text
-    assert Elements(text).open == []
-    markdown = as_markdown(parts, tmp_path / "page.md")
-    assert "| head | <1> |\n| --- | ---: |\n| row | 2 |" in markdown
-    assert (tmp_path / "page" / "p.png").read_bytes() == b"bytes"
+# Each means something in HTML, in Markdown, or in both.
+HOSTILE = [
+    "<script>alert(1)</script>",
+    "a | b",
+    "[link](javascript:alert(1))",
+    "![picture](http://example.org/x.png)",
+    "**bold** _slanted_ ~~gone~~ `code`",
+    "ends with #",
+    "&amp; \\| \\",
+    "two\n\n# lines",
+]
+
+
+def facts_with(name: str) -> dict[str, Any]:
+    """Return a report's facts with a name wherever somebody else chooses the text."""
+    return {
+        "name": name,
+        "env_id": name,
+        "observation": "vector",
+        "training_levels": [name],
+        "timesteps": 1,
+        "models": [[name, 0, name, 1, "1 min", name, "abc"]],
+        "origin": [[name, name]],
+        "curves": 0,
+        "suites": [{"name": "x", "heading": name, "summaries": [[["a"], [name]]], "levels": []}],
+        "settings": f"name = {name}\n```\n# {name}",
+    }
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_page_shows_names_as_they_are(name: str) -> None:
+    """Names of runs, levels and settings are other people's data; none may change the page."""
+    pictures = {"x.png": b"png", "play.gif": b"gif"}
+    page, plain = (Elements(as_html(facts_with(each), pictures)) for each in (name, "plain"))
+    assert page.open == []
+    # The same elements as with a harmless name, and no sources but the pictures.
+    assert page.tags == plain.tags
+    assert page.sources == ["data:image/png;base64,cG5n", "data:image/gif;base64,Z2lm"]
+    shown = " ".join(name.split())
+    assert page.text.count(shown) >= 8
+
+
+def test_a_page_as_markdown_refers_to_its_pictures(tmp_path: Path) -> None:
+    write_page(tmp_path / "my page.md", facts_with("x"), {"x.png": b"png", "play.gif": b"gif"})
+    assert (tmp_path / "my page" / "x.png").read_bytes() == b"png"
+    assert "](my%20page/x.png)" in (tmp_path / "my page.md").read_text(encoding="utf-8")
+
+
+def test_tables_and_code_are_markdown() -> None:
+    assert (
+        table([["head", "1"], ["nested_rings", 2]])
+        == "| head | 1 |\n| --- | ---: |\n| nested_rings | 2 |"
+    )
+    assert code("x = '```'") == "````toml\nx = '```'\n````"
+    assert escape(table([["a"]])) == table([["a"]])
 
 
 def test_the_mean_curve_is_read_at_the_same_decisions() -> None:
@@ -260,10 +310,10 @@ def test_without_a_model_the_packaged_agent_plays(
     assert cli.main(["evaluate", "--json", *arguments]) == 0
     results = json.loads(capsys.readouterr().out)["suites"]["games"]["policies"]
     agent, follower = (results[name]["summary"] for name in ("agent", "ball-follower"))
-    assert agent["cleared"]["mean"]["mean"] >= 0.9
+    assert agent["cleared"]["mean"]["estimate"] >= 0.9
     assert agent["hits"]["mean"]["low"] > 1.5 * follower["hits"]["mean"]["high"]
-    assert cli.main(["record", str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
-    about = ModelFile.find(None).run.about()
+    assert cli.main(["film", str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
+    about = ModelFile.find(None).run.read_notes()
     assert about["outcome"] == "finished"
     state = PPO.load(ModelFile.find(None).path, device="cpu").policy.state_dict()
     assert weights_hash(state) == about["weights"]

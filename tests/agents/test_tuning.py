@@ -7,8 +7,9 @@ from pathlib import Path
 import optuna
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.experiment.schema import SettingsError, read_settings
-from arkanoid.agents.experiment.settings import Experiment, packaged_configs
+from arkanoid.agents.experiment.errors import SettingsError
+from arkanoid.agents.experiment.reading import packaged_configs, read_settings
+from arkanoid.agents.experiment.settings import Experiment
 from arkanoid.agents.learn.tuning import best_as_toml, load_space, open_study
 
 SPACE = """
@@ -19,6 +20,7 @@ startup = 1
 "ppo.n_epochs" = { low = 1, high = 2 }
 "ppo.gamma" = { low = 0.9, high = 1.0, step = 0.05 }
 "network.hidden" = { choices = [[8], [16, 16]] }
+"network.activation" = { choices = ["relu", "elu"] }
 "env.life_penalty" = { choices = [0.1, 0.2] }
 """
 SMALL = ["--training.timesteps", "2048", "--training.worlds", "8", "--ppo.n_steps", "64"]
@@ -32,7 +34,7 @@ def space_file(folder: Path, text: str = SPACE) -> str:
     return str(path)
 
 
-def test_a_search_goes_on_where_it_was_and_prints_the_best(
+def test_a_search_resumes_and_prints_the_best(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = ["tune", "quick", *SMALL, "--space", space_file(tmp_path)]
@@ -44,17 +46,19 @@ def test_a_search_goes_on_where_it_was_and_prints_the_best(
     out = capsys.readouterr().out
     assert "2 trials so far" in out
     assert re.findall(r"^trial (\d+)", out, re.MULTILINE) == ["2", "3"]
-    # A study that has as many trials as it should only tells the best.
+    # A complete study only prints the best.
     assert cli.main([*arguments, "--trials", "4"]) == 0
     again = capsys.readouterr().out
     best = again[again.index("# score") :]
     assert out.endswith(best)
     table = tomllib.loads(best)
-    # What is printed is a part of a config.
+    # The printed settings are a part of a config.
     experiment = read_settings(Experiment, table, "best")
     assert 1e-4 <= experiment.ppo.learning_rate <= 1e-2
     assert experiment.network.hidden in ((8,), (16, 16))
     assert experiment.env["life_penalty"] in (0.1, 0.2)
+    # Texts were quoted twice: no trial could choose one.
+    assert experiment.network.activation in ("relu", "elu")
     study = open_study(tmp_path / "study", load_space(space_file(tmp_path)), 0)
     value = max(
         trial.value or 0.0
@@ -66,7 +70,7 @@ def test_a_search_goes_on_where_it_was_and_prints_the_best(
     assert len(list((tmp_path / "study").glob("trial*/run.json"))) == 4
 
 
-def test_settings_that_do_not_go_together_are_no_trial(
+def test_settings_that_contradict_each_other_make_no_trial(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = space_file(tmp_path, '[parameters]\n"ppo.batch_size" = { choices = [300, 330] }')
@@ -77,7 +81,7 @@ def test_settings_that_do_not_go_together_are_no_trial(
     assert "no trial is complete" in err
 
 
-def test_the_packaged_space_is_valid_and_no_config() -> None:
+def test_the_packaged_space_is_valid_and_is_not_listed_as_a_config() -> None:
     assert packaged_configs(".space.toml") == ["ppo"]
     assert "ppo" not in packaged_configs()
     space = load_space("ppo")
@@ -102,7 +106,7 @@ def test_the_packaged_space_is_valid_and_no_config() -> None:
         ('[parameters]\n"network.activation" = {choices = ["rellu"]}', ["'relu'", "'rellu'"]),
     ],
 )
-def test_a_wrong_space_is_named_with_what_is_right(
+def test_an_error_in_a_space_names_the_file_and_what_is_right(
     tmp_path: Path, text: str, words: list[str]
 ) -> None:
     path = space_file(tmp_path, text)

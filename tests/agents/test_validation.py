@@ -1,4 +1,4 @@
-"""What happens in the course of a training: validation, the curriculum, networks' features."""
+"""During a training: validation, the curriculum, and the networks' features."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,13 +8,9 @@ import numpy as np
 import pytest
 import torch
 from arkanoid.agents.experiment.provenance import weights_hash
+from arkanoid.agents.experiment.reading import packaged_configs
 from arkanoid.agents.experiment.runs import RunFolder
-from arkanoid.agents.experiment.settings import (
-    Curriculum,
-    Experiment,
-    load_experiment,
-    packaged_configs,
-)
+from arkanoid.agents.experiment.settings import Curriculum, Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds, native
 from arkanoid.agents.learn.curves import STEP, read_curve
 from arkanoid.agents.learn.model import load_policy, make_model
@@ -40,11 +36,11 @@ def trained(experiment: Experiment, **arguments: Any) -> tuple[str, RunFolder]:
 
 @pytest.mark.parametrize("deterministic", ["true", "false"])
 def test_validation_changes_no_weight(tmp_path: Path, deterministic: str) -> None:
-    """Also where it draws its actions: it must draw no number that the training would draw."""
+    """Even if it draws its actions, it must not draw a number that the training would draw."""
     draws = ("evaluation.deterministic", deterministic)
     every = (("validation.every", "2048"), ("validation.episodes", "3"))
     outcomes = [trained(small(tmp_path, draws, *more)) for more in ((), every)]
-    hashes = [run.about()["weights"] for _, run in outcomes]
+    hashes = [run.read_notes()["weights"] for _, run in outcomes]
     assert hashes[0] == hashes[1]
     assert not outcomes[0][1].best.exists()
     assert outcomes[1][1].best.exists()
@@ -56,21 +52,21 @@ def test_patience_ends_the_training(tmp_path: Path) -> None:
     def judge(step: int, means: dict[str, float]) -> None:
         seen.append((step, means["return"]))
 
-    # Nothing is ever cleared, so that no measurement is better than the first one.
+    # No level is ever cleared, so no measurement is better than the first one.
     options = (("validation.every", "1024"), ("validation.episodes", "2"))
     options += (("validation.best", "cleared"), ("validation.patience", "2"))
     outcome, run = trained(small(tmp_path, *options), on_measure=judge)
     assert outcome == "2 measurements without a better one at 3072 decisions"
     assert [step for step, _ in seen] == [1024, 2048, 3072]
-    assert run.about()["outcome"] == outcome
-    assert run.about()["timesteps"] == 3072
+    assert run.read_notes()["outcome"] == outcome
+    assert run.read_notes()["timesteps"] == 3072
     # Of equals the latest is the best.
     best = PPO.load(run.best, device="cpu").policy.state_dict()
-    assert weights_hash(best) == run.about()["weights"]
+    assert weights_hash(best) == run.read_notes()["weights"]
 
 
 def test_the_best_model_is_that_of_the_best_measurement(tmp_path: Path) -> None:
-    """A run that ends there has the same weights."""
+    """A run that ends at that step has the same weights."""
     constant = ("ppo.schedule", "constant")
     options = (("validation.every", "1024"), ("validation.episodes", "2"), constant)
     _, run = trained(small(tmp_path, *options))
@@ -82,11 +78,11 @@ def test_the_best_model_is_that_of_the_best_measurement(tmp_path: Path) -> None:
     step = str(measured[max(measured)])
     _, shorter = trained(small(tmp_path, ("training.timesteps", step), constant))
     best = PPO.load(run.best, device="cpu").policy.state_dict()
-    assert weights_hash(best) == shorter.about()["weights"]
+    assert weights_hash(best) == shorter.read_notes()["weights"]
 
 
 def test_a_cleared_rate_ends_the_training(tmp_path: Path) -> None:
-    """A level with a few bricks low down, which even an untrained policy clears now and then."""
+    """The level has a few bricks low down, which even an untrained policy sometimes clears."""
     level = tmp_path / "easy.txt"
     rows = ["...........", "...www....."]
     level.write_text("name: Easy\ncomment: For a test.\n\n" + "\n".join(rows) + "\n")
@@ -95,7 +91,7 @@ def test_a_cleared_rate_ends_the_training(tmp_path: Path) -> None:
     options += (("validation.levels", f'["{level}"]'), ("evaluation.deterministic", "false"))
     outcome, run = trained(small(tmp_path, *options))
     assert outcome.startswith("cleared rate ")
-    assert run.about()["weights"] is not None
+    assert run.read_notes()["weights"] is not None
 
 
 def test_stages_begin_at_their_parts_of_the_training() -> None:
@@ -117,8 +113,8 @@ def test_the_curriculum_reaches_the_worlds(tmp_path: Path) -> None:
     assert [info["round"] for info in venv.reset_infos] == [1 + world % 3 for world in range(16)]
 
 
-def test_the_lattice_is_seen_as_the_picture_that_it_is() -> None:
-    """A convolution that looks at one cell finds it where the observation has it."""
+def test_convolutions_see_the_bricks_of_a_vector_as_a_picture() -> None:
+    """Each cell reaches the convolutions at its place."""
     experiment = load_experiment("quick")
     layout = native(make_worlds(experiment, 1)).layout
     length = max(part.stop for part in layout.values())
@@ -190,7 +186,7 @@ def test_a_saved_model_holds_no_optimiser_state(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", packaged_configs())
 def test_every_packaged_config_can_be_trained(name: str, tmp_path: Path) -> None:
-    """With all that it asks for, curriculum and validation, but for a moment only."""
+    """With curriculum and validation as it says, but only for a moment."""
     overrides = [("training.worlds", "4"), ("training.timesteps", "192"), ("ppo.n_steps", "16")]
     overrides += [
         ("ppo.batch_size", "64"),
@@ -201,4 +197,4 @@ def test_every_packaged_config_can_be_trained(name: str, tmp_path: Path) -> None
     outcome, run = trained(load_experiment(name, overrides))
     assert outcome == "finished"
     assert run.best.is_file()
-    assert run.about()["timesteps"] == 192
+    assert run.read_notes()["timesteps"] == 192

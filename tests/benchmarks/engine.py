@@ -1,10 +1,10 @@
-"""The engine beside Chipmunk (pymunk) and Box2D: speed, energy, tunnelling, bounces made.
+"""Compares the engine with Chipmunk (pymunk) and Box2D: speed, energy, tunnelling, bounces.
 
 Run: python tests/benchmarks/engine.py [--quick] [--only-ours]
 
-Everything is measured in one run on one core, in seconds of the processor, and the engines take
-turns. The peers come with `pip install -e ".[bench]"`; a column is empty
-where one is missing. docs/performance.md says what the rows mean.
+One run measures everything on one core, in processor time, and the engines take turns.
+`pip install -e ".[bench]"` installs the peers; the column of a missing peer is empty.
+docs/performance.md explains the rows.
 """
 
 import argparse
@@ -33,32 +33,32 @@ from engines.scene import (
 LABEL, COLUMN = 44, 15  # characters
 BATCH = 1024  # worlds
 STARTS = 8  # headings of the ball among bricks
-PATHS = (0.1, 0.5)  # billiards: radii that a disc moves in a step
-CORRIDOR_SPEEDS = (0.8, 8.0, 80.0)  # units a step
+PATHS = (0.1, 0.5)  # billiards: radii that a disc moves per step
+CORRIDOR_SPEEDS = (0.8, 8.0, 80.0)  # units per step
 Columns = dict[str, type[Engine] | None]
 
 
 class Clock:
-    """Seconds that several engines compute for the same things to do, the least of some rounds."""
+    """The processor time that each engine needs for each task: the least of several rounds."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, dict[int, float]] = {}
 
-    def time(self, name: str, thing: int, work: Callable[[], object]) -> None:
-        """Do ``work``, the thing's turn of the engine called ``name``."""
+    def time(self, name: str, task: int, work: Callable[[], object]) -> None:
+        """Do ``work``, one round of a task, by the engine called ``name``."""
         start = time.thread_time()  # all engines work in the thread that calls them
         work()
         taken = time.thread_time() - start
         least = self.seconds.setdefault(name, {})
-        least[thing] = min(taken, least.get(thing, taken))
+        least[task] = min(taken, least.get(task, taken))
 
     def total(self, name: str) -> float:
-        """Return the seconds for all things once."""
+        """Return the seconds for all tasks together."""
         return sum(self.seconds[name].values())
 
 
 class Table:
-    """Prints rows as they are measured: a label, our column, and one for each peer."""
+    """Prints rows as they are measured: a label, our column, and one column per peer."""
 
     def __init__(self, columns: Columns) -> None:
         self.columns = columns
@@ -81,7 +81,7 @@ class Table:
         print(line.rstrip(), flush=True)
 
     def ratios(self, values: dict[str, float], ours: float, target: float | None = None) -> None:
-        """Print how many times the rate of each peer ours is, and whether pymunk's is enough."""
+        """Print our rate divided by each peer's, and whether that for pymunk reaches the target."""
         ratios = {name: ours / value for name, value in values.items() if name != self.ours}
         label = "  ours / theirs"
         if target is not None and "pymunk" in ratios:
@@ -99,7 +99,7 @@ def present(columns: Columns) -> dict[str, type[Engine]]:
 
 
 def breakout_speed(table: Table, ticks: int, rounds: int) -> None:
-    """Ticks a second of the ball among bricks: a call a tick, many ticks a call, many worlds."""
+    """Measure a ball among bricks: one call per tick, many ticks per call, many worlds."""
     scenes = [breakout(heading) for heading in headings(STARTS)]
     engines = {**present(table.columns), "many": ManySteps}
     clock = Clock()
@@ -129,7 +129,7 @@ def breakout_speed(table: Table, ticks: int, rounds: int) -> None:
 
 
 def batch_rate(ticks: int, rounds: int) -> float:
-    """Return the ticks a second of all worlds of a batch together."""
+    """Return the ticks per second that all worlds of a batch make together."""
     scene = breakout(0.5)
     angles = headings(BATCH)
     velocities = BALL_SPEED * np.stack([np.sin(angles), np.cos(angles)], axis=1)
@@ -143,7 +143,7 @@ def batch_rate(ticks: int, rounds: int) -> float:
 
 
 def breakout_energy(table: Table, ticks: int) -> None:
-    """How the ball's speed drifts among bricks. Peers with their most accurate settings."""
+    """Measure how the ball's speed drifts among bricks, with the peers' most accurate settings."""
     drifts = {}
     for name, engine in present(table.columns).items():
         worlds = [engine(breakout(heading), accurate=True) for heading in headings(STARTS)]
@@ -159,7 +159,7 @@ def breakout_energy(table: Table, ticks: int) -> None:
 
 
 def billiards_all(table: Table, steps: int, rounds: int, path: float) -> None:
-    """A thousand discs: contacts a second, energy, discs lost."""
+    """Measure a thousand discs: contacts per second, energy, discs lost."""
     scene = billiards(path=path)
     clock, contacts, drift, lost = Clock(), {}, {}, {}
     for _ in range(rounds):
@@ -191,7 +191,7 @@ def energy(velocities: FloatArray) -> float:
 
 
 def tunnelling(table: Table, steps: int) -> None:
-    """Balls fast enough to fly over a wall within a step."""
+    """Measure balls that are fast enough to cross a wall within one step."""
     scene = volley()
     through, kept, right = {}, {}, {}
     for name, engine in present(table.columns).items():
@@ -212,7 +212,7 @@ def tunnelling(table: Table, steps: int) -> None:
 
 
 def bounces(table: Table, steps: int) -> None:
-    """Bounces that a ball makes between two walls, against those that are due."""
+    """Compare the bounces that a ball makes between two walls with those that are due."""
     table.title(f"Bounces of a ball between two walls 9.6 units of flight apart, {steps:,} steps")
     for speed in CORRIDOR_SPEEDS:
         made = {
@@ -224,7 +224,7 @@ def bounces(table: Table, steps: int) -> None:
 
 
 def warm_up(engines: Iterable[type[Engine]]) -> None:
-    """Compile, or load, what is compiled."""
+    """Compile the kernels, or load them."""
     scenes: Sequence[Scene] = (breakout(0.5), billiards(16), volley(4), corridor(1.0))
     for engine in engines:
         for scene in scenes:
@@ -233,7 +233,7 @@ def warm_up(engines: Iterable[type[Engine]]) -> None:
 
 
 def one_core() -> str:
-    """Keep this process on one core, where that can be done; return a word about it."""
+    """Keep this process on one core, if the system can; return a note about it."""
     if not hasattr(os, "sched_setaffinity"):
         return "not pinned to a core"
     core = max(os.sched_getaffinity(0))

@@ -1,4 +1,4 @@
-"""What it takes to keep, restore and copy games, to record them and to play them again.
+"""Measures how long it takes to save, restore, copy, record and replay games.
 
 Run: python tests/benchmarks/saving.py [--seconds 1]
 """
@@ -17,7 +17,7 @@ DECISIONS = 9000  # ten minutes of play
 
 
 def seconds_each(act: Callable[[], Any], seconds: float) -> float:
-    """Return the seconds that a call takes, as the best of five slices of the time."""
+    """Return the seconds per call: the best of five slices of the time."""
     act()
     best = float("inf")
     for _ in range(5):
@@ -41,7 +41,7 @@ def begun(**keywords: Any) -> ArkanoidEnv:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=1.0, help="for each row")
+    parser.add_argument("--seconds", type=float, default=1.0, help="time per row")
     seconds = parser.parse_args().seconds
     env = begun()
     pictures = begun(observation="rgb", grey=True, stack=4)

@@ -1,8 +1,10 @@
-"""How long a program waits for its first step, with and without compiled kernels on disk.
+"""Measures how long a program waits for its first step, with and without compiled kernels on disk.
 
-Run with ``python tests/benchmarks/startup.py``. Every line is a new process. Cold, the folder of
-compiled kernels is empty (once after an installation or an edit of a kernel); warm is every later
-start. The goals are 20 s cold and 1.5 s warm on two cores.
+Run: python tests/benchmarks/startup.py [--warm 5]
+
+Every line is a new process. At a cold start the folder of compiled kernels is empty, as after an
+installation or an edit of a kernel; every later start is warm. The goals are 20 s and 1.5 s on two
+cores.
 """
 
 import argparse
@@ -33,7 +35,7 @@ print(json.dumps([after - before for before, after in zip(times, times[1:])]))
 
 
 def measure(cache: str) -> list[float]:
-    """Return the seconds of each phase in a new process that keeps its kernels in ``cache``."""
+    """Return the seconds of each phase, in a new process that keeps its kernels in ``cache``."""
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM],
         env={**os.environ, "ARKANOID_CACHE_DIR": cache},

@@ -1,10 +1,10 @@
-"""Steps a second of the environments beside MinAtar, ale-py and a native Breakout.
+"""Compares the environments' steps per second with MinAtar, ale-py and a native Breakout.
 
 Run: python tests/benchmarks/throughput.py [--quick] [--only-ours]
 
-Everything is measured in one run, with random actions, after the games have drifted apart; what a
-section compares takes turns. The peers come with `pip install -e ".[bench]"`; a row says so where
-one is missing. docs/performance.md says what the rows mean.
+One run measures everything, with random actions, after the games have drifted apart, and the games
+of a section take turns. `pip install -e ".[bench]"` installs the peers; rows say which are missing.
+docs/performance.md explains the rows.
 """
 
 import argparse
@@ -21,14 +21,14 @@ from types import ModuleType
 from games import PEERS, Game, arkanoid_games, peer
 
 WORLDS, FEW, MANY = 1024, 128, 4096
-# An emulator takes the same time whatever happens and however many they are.
+# An emulator's steps take the same time in any situation and in any number of worlds.
 EMULATORS = 16
 LITE, FULL = "ArkanoidLite-v0", "Arkanoid-v0"
 TURBO = "env-breakoutatari2600-turbo-native"
 PICTURES = {"observation": "rgb", "grey": True}
-WARM_UP = 500  # decisions: some episodes of random actions, so that all stages of one are met
+WARM_UP = 500  # decisions: some episodes of random actions, so that all of their stages occur
 GAIN = 1.7  # the goal of two threads
-SHORTER = 40  # both cores are rarely left alone for longer than some milliseconds
+SHORTER = 40  # other programs rarely leave both cores alone for more than some milliseconds
 LABEL = 62  # characters
 Clock = Callable[[], float]
 Peers = dict[str, ModuleType | None]
@@ -43,7 +43,7 @@ class Effort:
     turn: float  # seconds
 
     def shorter(self, times: int) -> "Effort":
-        """Return as many times the turns, each of them so much shorter."""
+        """Return an effort with more turns, each shorter by the same factor."""
         return replace(self, turns=self.turns * times, turn=self.turn / times)
 
 
@@ -53,15 +53,15 @@ QUICK = Effort(WARM_UP // 10, turns=2, turn=0.05)
 
 @dataclass(frozen=True)
 class Row:
-    """What is measured.
+    """One measurement.
 
     Args:
-        label: what it is called.
-        make: makes it; None: its package is not installed.
-        mark: of ours, a letter by which other rows refer to it.
-        beside: the mark of the row of ours that it is compared with.
-        goal: steps a second to reach.
-        part: of the rate of the row ``beside``, to reach.
+        label: the name of what is measured.
+        make: makes the game; None if its package is not installed.
+        mark: a letter by which other rows refer to this one, if it is ours.
+        beside: the mark of our row that this one is compared with.
+        goal: the steps per second to reach.
+        part: the share of the rate of the row ``beside`` to reach.
     """
 
     label: str
@@ -73,7 +73,7 @@ class Row:
 
 
 class Turns:
-    """A game's best rate among those of several turns."""
+    """Measures the best rate of a game among several turns."""
 
     def __init__(self, game: Game, effort: Effort, clock: Clock) -> None:
         self.game = game
@@ -96,7 +96,7 @@ class Turns:
 
 
 def rates(games: Sequence[Game], effort: Effort, clock: Clock) -> list[float]:
-    """Return each game's steps a second; they take turns."""
+    """Return the steps per second of each game; the games take turns."""
     all_turns = [Turns(game, effort, clock) for game in games]
     for _ in range(effort.turns):
         for turns in all_turns:
@@ -107,11 +107,11 @@ def rates(games: Sequence[Game], effort: Effort, clock: Clock) -> list[float]:
 
 
 def show_section(title: str, rows: Sequence[Row], effort: Effort) -> None:
-    """Measure rows on one core, in seconds of the processor, and print them."""
+    """Measure rows on one core, in processor time, and print them."""
     print(f"\n{title}", flush=True)
     present = [row for row in rows if row.make is not None]
     games = [row.make() for row in present if row.make is not None]
-    # Of the process: a peer's own threads count.
+    # The time of the whole process: a peer's own threads count.
     results = dict(zip(present, rates(games, effort, time.process_time), strict=True))
     marked = {row.mark: rate for row, rate in results.items() if row.mark}
     for row in rows:
@@ -122,7 +122,7 @@ def show_section(title: str, rows: Sequence[Row], effort: Effort) -> None:
 
 
 def verdict(row: Row, rate: float, marked: dict[str, float]) -> str:
-    """Return what the last column says of a row."""
+    """Return the last column of a row."""
     if row.goal is not None:
         return f"goal {row.goal:,.0f}: {met(rate >= row.goal)}"
     if row.part is not None:
@@ -143,7 +143,7 @@ def show(mark: str, label: str, rate: float, said: str) -> None:
 
 @contextmanager
 def one_core() -> Iterator[str]:
-    """Keep this process on one core, where that can be done; give a word about it."""
+    """Keep this process on one core, if the system can; give a note about it."""
     if not hasattr(os, "sched_setaffinity"):
         yield "not pinned to a core"
         return
@@ -156,7 +156,7 @@ def one_core() -> Iterator[str]:
 
 
 def made(module: ModuleType | None, function: str, *values: int) -> Callable[[], Game] | None:
-    """Return what makes a peer's game; None if the peer is not installed."""
+    """Return a function that makes a peer's game; None if the peer is not installed."""
     return None if module is None else partial(getattr(module, function), *values)
 
 
@@ -207,7 +207,7 @@ def single(peers: Peers) -> list[Row]:
 
 
 def show_threads(effort: Effort) -> None:
-    """Measure one and two threads, in seconds of the clock, and print how much two gain."""
+    """Measure one and two threads, in wall-clock time, and print how much two gain."""
     print(
         f"\nTwo threads, {WORLDS} worlds, frame skip 4, two cores, seconds of the clock", flush=True
     )
@@ -230,7 +230,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--quick", action="store_true", help="for a tenth of the time")
+    parser.add_argument("--quick", action="store_true", help="in a tenth of the time")
     parser.add_argument("--only-ours", action="store_true", help="without the peers")
     options = parser.parse_args()
     effort = QUICK if options.quick else THOROUGH

@@ -1,4 +1,4 @@
-"""What the environment costs a training: PPO on the game, and on an environment that costs nothing.
+"""Measures what share of a training the environment costs, by PPO on a free environment.
 
 Run: python tests/benchmarks/training.py [--config quick] [--rollouts 12]
 """
@@ -18,7 +18,7 @@ REPEATS = 3
 
 
 class Free(VecEnv):
-    """The game's spaces, and the same answer to every action."""
+    """Has the game's spaces, and gives the same answer to every action."""
 
     def __init__(self, venv: VecEnv) -> None:
         super().__init__(venv.num_envs, venv.observation_space, venv.action_space)
@@ -54,7 +54,7 @@ class Free(VecEnv):
 
 
 def seconds_of(experiment: Experiment, venv: VecEnv, rollouts: int) -> tuple[float, float]:
-    """Return the seconds of a training, and those of its updates, after a warm-up."""
+    """Return the seconds of a training after a warm-up, and of its updates alone."""
     model = make_model(experiment, venv)
     size = experiment.ppo.n_steps * experiment.training.worlds
     update, spent = model.train, [0.0]
@@ -75,7 +75,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--config", default="quick", help="packaged config or TOML file")
-    parser.add_argument("--rollouts", type=int, default=12, help="for each of three measurements")
+    parser.add_argument("--rollouts", type=int, default=12, help="rollouts per measurement")
     options = parser.parse_args()
     experiment = load_experiment(options.config, [("training.torch_threads", "1")])
     game = adapt(make_worlds(experiment, experiment.training.worlds))

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import gymnasium as gym
 import numpy as np
 import torch
-from arkanoid.agents.measure.baselines import Policy
 from arkanoid.agents.measure.episodes import play_episodes
+from arkanoid.agents.measure.policy import Policy
 from ray.rllib.core.rl_module.rl_module import RLModule
 from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner
 from rllib_ppo import make_config, make_worlds
@@ -16,16 +16,16 @@ WORLDS = 12
 SEED = 7
 # Short games, of which some are truncated.
 SHORT = {"lives": 1, "max_decisions": 60}
-# Calls of `sample`, each of which cuts the episodes, and decisions of each world in a call.
+# The calls of `sample`, each of which cuts the episodes, and each world's decisions per call.
 CHUNKS, CHUNK = 8, 64
 
 
 def check_episodes() -> str:
-    """Play with a runner as a training does; replay each world's actions in a single environment.
+    """Play with a runner as a training does, and replay each world in a single environment.
 
-    Observations, rewards and ends have to be the same, bit for bit: a step too many or too few at
-    an episode's end (the autoreset mode) would show, and so would observations that the next step
-    overwrites (`copy`).
+    Observations, rewards and ends must be the same, bit for bit. This finds a step too many or too
+    few at an episode's end (the autoreset mode), and observations that the next step overwrites
+    (`copy`).
     """
     runner, owners = _runner()
     chunks = defaultdict(list)
@@ -33,19 +33,20 @@ def check_episodes() -> str:
         for chunk in runner.sample(num_timesteps=CHUNK * WORLDS):
             chunks[chunk.id_].append(chunk)
     metrics = runner.get_metrics()
-    told = [metrics[name].peek() for name in ("episode_return_mean", "episode_len_mean")]
+    reported = [metrics[name].peek() for name in ("episode_return_mean", "episode_len_mean")]
     runner.stop()
     games: list[Game] = []
     for world, seed in enumerate(_seeds()):
         games += _replay(seed, [chunks[name] for name, owner in owners.items() if owner == world])
     ends = Counter(game.end for game in games)
-    assert {"terminated", "truncated"} <= ends.keys(), "both kinds of ends are to be seen"
+    assert {"terminated", "truncated"} <= ends.keys(), "both kinds of ends must occur"
     ended = [game for game in games if game.end]
-    due = np.mean([(game.total, game.length) for game in ended], axis=0)
-    np.testing.assert_allclose(told, due, rtol=1e-12)  # RLlib adds up in another order
+    expected = np.mean([(game.total, game.length) for game in ended], axis=0)
+    np.testing.assert_allclose(reported, expected, rtol=1e-12)  # RLlib sums in another order
     return (
         f"{len(ended)} episodes ({ends['truncated']} truncated) are bit for bit those of single "
-        f"environments;\nRLlib's mean return {told[0]:.3f} and length {told[1]:.1f} are theirs"
+        f"environments;\nRLlib's mean return {reported[0]:.3f} "
+        f"and length {reported[1]:.1f} are theirs"
     )
 
 
@@ -58,20 +59,20 @@ class Game(NamedTuple):
 
 
 def _runner() -> tuple[SingleAgentEnvRunner, dict[str, int]]:
-    """Return a runner in this process, and which world an episode is of, filled as it plays."""
+    """Return a runner in this process, and the world of each episode, filled as it plays."""
     owners: dict[str, int] = {}
 
     def remember(*, episode: Any, env_index: int, **others: Any) -> None:
         owners[episode.id_] = env_index
 
     config = make_config(0, WORLDS, SEED, **SHORT).reporting(
-        metrics_num_episodes_for_smoothing=10**6  # the mean is of all of them
+        metrics_num_episodes_for_smoothing=10**6  # the mean is over all of them
     )
     return SingleAgentEnvRunner(config=config.callbacks(on_episode_start=remember)), owners
 
 
 def _replay(seed: int, episodes: list[list[Any]]) -> list[Game]:
-    """Play a world's episodes, each a list of RLlib's chunks, one after the other; compare."""
+    """Replay a world's episodes, each given as a list of RLlib's chunks, and compare them."""
     env = gym.make("arkanoid:ArkanoidLite-v0", life_penalty=0.2, **SHORT)
     observation, _ = env.reset(seed=seed)
     games = []
@@ -97,7 +98,7 @@ def _replay(seed: int, episodes: list[list[Any]]) -> list[Game]:
 
 
 def _seeds() -> list[int]:
-    """Return the seeds that the worlds of a runner in this process were given."""
+    """Return the seeds that a runner in this process gives its worlds."""
     seen: list[int] = []
 
     class Spy(gym.vector.VectorWrapper):
@@ -113,8 +114,8 @@ def _seeds() -> list[int]:
 
 
 def check_seeds() -> str:
-    """No two worlds of neighbouring runners may play with the same luck."""
-    # Which level an episode is on is drawn; at this difficulty hardly two of them are alike.
+    """Check that no two worlds of neighbouring runners have the same random numbers."""
+    # An episode's level is drawn at random; at this difficulty hardly any two levels are alike.
     levels = {"levels": "seeds:0-999999999", "difficulty": 1.0}
     fields = []
     for runner in range(4):
@@ -128,10 +129,10 @@ def check_seeds() -> str:
 
 
 def likeliest(module: RLModule, count: int) -> Policy:
-    """Return a module's policy without exploration, for `play_episodes` of so many worlds.
+    """Return a module's policy without exploration, for `play_episodes` with `count` worlds.
 
-    It is always asked for all of them, as RLlib asks it: how a matrix product rounds depends on the
-    number of rows, and a game that goes another way once is another game.
+    It always computes all worlds, as RLlib does: the rounding of a matrix product depends on the
+    number of rows, and one different decision makes a different game.
     """
     inputs: Any = None
 
@@ -148,7 +149,7 @@ def likeliest(module: RLModule, count: int) -> Policy:
 
 
 def check_evaluation(module: RLModule) -> str:
-    """Let RLlib and our own evaluation measure the same policy, on the same seeds."""
+    """Let RLlib and our own evaluation measure the same policy on the same seeds."""
     count = 32
     keywords = {"life_penalty": 0.2, "max_decisions": 2000}
     worlds = gym.make_vec(
@@ -178,7 +179,7 @@ def _first_episodes(
     config = make_config(0, count, SEED).environment(
         "arkanoid:ArkanoidLite-v0", env_config=keywords
     )
-    # RLlib merges an environment's settings into those that it had.
+    # RLlib would merge these settings into the earlier ones.
     config.env_config = keywords
     runner = SingleAgentEnvRunner(config=config.callbacks(on_episode_start=remember))
     runner.module.set_state(module.get_state())

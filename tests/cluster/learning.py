@@ -1,4 +1,4 @@
-"""A training on several processes of this machine, and what it is worth."""
+"""A training on several processes of this machine, and a check that it learns."""
 
 import time
 
@@ -16,7 +16,7 @@ SEED = 1_000_000
 
 
 def train_locally(decisions: int) -> tuple[RLModule, str]:
-    """Train with several environment runners; return the agent, and what was done."""
+    """Train with several environment runners; return the agent and a summary."""
     algorithm = make_config(RUNNERS, seed=0).build_algo()
     start = time.perf_counter()
     train(algorithm, decisions)
@@ -27,7 +27,7 @@ def train_locally(decisions: int) -> tuple[RLModule, str]:
 
 
 def check_learning(module: RLModule) -> str:
-    """Let the agent and random play the same games: the intervals of their means lie apart."""
+    """Check that the agent beats random play: the intervals of their means do not overlap."""
     measured = {}
     for name in ("agent", "random"):
         worlds = gym.make_vec("arkanoid:ArkanoidLite-v0", num_envs=GAMES, autoreset_mode="SameStep")

@@ -1,4 +1,4 @@
-"""A cluster of two nodes on one machine: each has its own Ray daemon, core and kernels' cache."""
+"""A cluster of two nodes on one machine, each with its own Ray daemon, core and kernel cache."""
 
 import tempfile
 import time
@@ -10,13 +10,13 @@ import ray
 from ray.cluster_utils import Cluster
 from rllib_ppo import make_config
 
-CORES = 1  # of each node, so that there is room for one runner
+CORES = 1  # of each node: room for one runner
 STORE = 100_000_000  # bytes of each node's object store
-PATIENCE = 300  # seconds until a runner that was lost has to be back
+PATIENCE = 300  # seconds until a lost runner must be back
 
 
 def check_two_nodes() -> str:
-    """Train on two nodes, lose one, go on with the other, get it back."""
+    """Train on two nodes, lose one, continue on the other, and get the lost one back."""
     with tempfile.TemporaryDirectory() as folder:
         caches = [Path(folder, name) for name in ("head", "worker")]
         cluster = Cluster(
@@ -73,16 +73,16 @@ def _train(cluster: Cluster, worker: Any, caches: list[Path]) -> str:
 
 
 def _iterate(algorithm: Any, iterations: int) -> int:
-    """Train, and return how many decisions were played in so many iterations."""
+    """Train, and return how many decisions were played."""
     played = 0
     for _ in range(iterations):
-        # The lifetime's sum loses what a runner that is gone had added.
+        # The sum over the lifetime loses the decisions of a runner that is gone.
         played += round(algorithm.train()["env_runners"]["num_env_steps_sampled"])
     return played
 
 
 def _homes(algorithm: Any) -> set[str]:
-    """Return the nodes on which there are runners."""
+    """Return the nodes that have runners."""
     return set(
         algorithm.env_runner_group.foreach_env_runner(
             lambda runner: ray.get_runtime_context().get_node_id(), local_env_runner=False
@@ -91,7 +91,7 @@ def _homes(algorithm: Any) -> set[str]:
 
 
 def _check_weights(algorithm: Any) -> None:
-    """All runners play with what was learned."""
+    """Check that all runners play with the weights of the learner."""
     learned = algorithm.learner_group.get_weights()["default_policy"]
     for played in algorithm.env_runner_group.foreach_env_runner(
         lambda runner: runner.module.get_state(), local_env_runner=False

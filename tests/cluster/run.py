@@ -1,6 +1,6 @@
 """RLlib on this environment: are its episodes right, does it learn, does it run on two nodes?
 
-``make ray`` runs it, in a virtual environment of its own: about ten minutes on two cores.
+`make ray` runs it in a virtual environment of its own; it takes about ten minutes on two cores.
 """
 
 import argparse
@@ -19,7 +19,7 @@ PACKAGES = ("ray", "gymnasium", "torch", "numpy", "numba")
 
 
 def prepare() -> None:
-    """Let this process, and those that Ray starts, find what they import; report to nobody."""
+    """Let this process and those of Ray find what they import, and turn off Ray's reports."""
     folders = [str(HERE), str(EXAMPLES)]
     sys.path[:0] = folders
     os.environ["PYTHONPATH"] = os.pathsep.join([*folders, os.environ.get("PYTHONPATH", "")])
@@ -27,17 +27,17 @@ def prepare() -> None:
 
 
 def say(title: str, part: Callable[[], str]) -> None:
-    """Run a part, and print what came of it."""
+    """Run a part, and print what it returns."""
     start = time.perf_counter()
-    told = part()
+    text = part()
     print(f"\n{title} ({time.perf_counter() - start:.0f} s)")
-    for line in told.splitlines():
+    for line in text.splitlines():
         print(f"  {line}", flush=True)
 
 
 @contextmanager
 def ray_here() -> Iterator[None]:
-    """Have Ray on this machine, with room for two runners, whatever the number of cores."""
+    """Start Ray on this machine, with room for two runners on any number of cores."""
     import ray
     from rllib_ppo import ALONE
 
@@ -48,7 +48,7 @@ def ray_here() -> Iterator[None]:
         ray.shutdown()
 
 
-# Each part imports what it needs, when it is its turn: so `--help` needs no Ray.
+# Each part imports what it needs only when it runs, so `--help` needs no Ray.
 
 
 def episodes(decisions: int) -> None:
@@ -60,14 +60,14 @@ def episodes(decisions: int) -> None:
 
 
 def training(decisions: int) -> None:
-    """Does a training on several processes learn, and is that measured rightly?"""
+    """Does a training on several processes learn, and does RLlib measure it correctly?"""
     from episodes import check_evaluation
     from learning import check_learning, train_locally
 
     with ray_here():
         print("\nTraining on two processes", flush=True)
-        module, told = train_locally(decisions)
-        say("It has learnt", lambda: f"{told}\n{check_learning(module)}")
+        module, summary = train_locally(decisions)
+        say("It has learnt", lambda: f"{summary}\n{check_learning(module)}")
         say("RLlib measures as we do", lambda: check_evaluation(module))
 
 
@@ -93,7 +93,7 @@ def main() -> None:
     """Run all parts, or those that are named."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("parts", nargs="*", metavar="PART", help=f"of {', '.join(PARTS)}")
-    parser.add_argument("--decisions", type=int, default=300_000, help="of the training")
+    parser.add_argument("--decisions", type=int, default=300_000, help="length of the training")
     arguments = parser.parse_args()
     unknown = [part for part in arguments.parts if part not in PARTS]
     if unknown:

@@ -1,4 +1,4 @@
-"""How many decisions a second one and two runners play, beside the bare environment."""
+"""How many decisions per second one and two runners play, and the bare environment."""
 
 import os
 import time
@@ -9,17 +9,17 @@ import numpy as np
 from rllib_ppo import make_config
 
 WORLDS = 64  # of each runner
-DECISIONS = 200_000  # that the bare environment plays in a measurement
-SAMPLED = 20_000  # that each runner plays in one
+DECISIONS = 200_000  # of the bare environment, per measurement
+SAMPLED = 20_000  # decisions of each runner, per measurement
 REPEATS = 3
 ITERATIONS = 5
 
 
 def measure_scaling() -> str:
-    """Return a table of decisions a second: by the clock, and by the time that processors worked.
+    """Return a table of decisions per second, by the wall clock and by processor time.
 
-    The second one is hardly touched by whatever else the machine does. A training has two rows of
-    it: the runners' work is divided among them, and the learner's is not.
+    Other programs hardly affect processor time. A training has two rows, because the runners share
+    their work, and the learner does not share its own.
     """
     rows = [("bare environment, random actions", *_bare())]
     for runners in (1, 2):
@@ -52,9 +52,9 @@ def _bare() -> tuple[float, float]:
 
 
 def _sampling(algorithm: Any) -> tuple[float, float]:
-    """Let all runners play at once, without any learning."""
+    """Let all runners play at the same time, without learning."""
     group = algorithm.env_runner_group
-    group.foreach_env_runner(_play(20 * WORLDS), local_env_runner=False)  # the first steps load
+    group.foreach_env_runner(_play(20 * WORLDS), local_env_runner=False)  # loads kernels
     speeds = []
     for _ in range(REPEATS):
         start = time.perf_counter()
@@ -66,7 +66,7 @@ def _sampling(algorithm: Any) -> tuple[float, float]:
 
 
 def _play(decisions: int) -> Any:
-    """Return a function that plays in a runner and returns how much, and its processor's time."""
+    """Return a function that plays in a runner; it returns the decisions and processor time."""
 
     def play(runner: Any) -> tuple[int, float]:
         busy = time.process_time()
@@ -77,7 +77,7 @@ def _play(decisions: int) -> Any:
 
 
 def _training(algorithm: Any) -> tuple[float, float]:
-    """Train, and measure whole iterations by the clock, and this process's work: it learns."""
+    """Train; measure whole iterations by the clock, and the processor time of the learner."""
     algorithm.train()
     start, busy, played = time.perf_counter(), time.process_time(), 0.0
     for _ in range(ITERATIONS):
@@ -86,7 +86,7 @@ def _training(algorithm: Any) -> tuple[float, float]:
 
 
 def _speeds(decisions: float, clock: float, busy: float) -> tuple[float, float]:
-    """Return decisions a second of the clock, and of a processor's work."""
+    """Return decisions per second of wall-clock time and of processor time."""
     return decisions / clock, decisions / busy
 
 

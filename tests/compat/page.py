@@ -1,6 +1,7 @@
-"""Writes into docs/compatibility.md what came of the latest tries.
+"""Writes the results of the latest runs into the documentation: `python -m compat.page` in tests/.
 
-The table and the record are between marks; the rest of the page is written by hand.
+The table goes into docs/compatibility.md, between two marks. What the commands printed goes into a
+file of its own, docs/results/compatibility.txt.
 """
 
 import json
@@ -8,32 +9,32 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from peers import HERE, ROOT, Peer, package, read_peers
+from .peers import HERE, ROOT, Peer, package, read_peers
 
 PAGE = ROOT / "docs" / "compatibility.md"
+PRINTED = ROOT / "docs" / "results" / "compatibility.txt"
 RESULTS = HERE / "results.json"
-MARK = "<!-- {} of `make compat` -->"
-END = "<!-- end of it -->"
+MARK = "<!-- Table of `make compat` -->"
+END = "<!-- End of the table -->"
 
 
 def read_results() -> dict[str, Any]:
-    """Return the latest result of each peer that is still there."""
+    """Return the latest result of each peer in `peers.toml`."""
     if not RESULTS.exists():
         return {}
     results = json.loads(RESULTS.read_text(encoding="utf-8"))
     return {name: results[name] for name in read_peers() if name in results}
 
 
-def write_page(page: Path = PAGE) -> None:
-    """Put the table and the record of what was printed into the page."""
-    text = page.read_text(encoding="utf-8")
-    for part, lines in (("Table", table()), ("Record", record())):
-        before, mark, rest = text.partition(MARK.format(part))
-        _, end, after = rest.partition(END)
-        if not mark or not end:
-            raise ValueError(f"{page}: {MARK.format(part)} or its {END} is missing")
-        text = "\n".join([before + mark, "", *lines, "", end + after])
+def write_page(page: Path = PAGE, printed: Path = PRINTED) -> None:
+    """Write the table into the page, and what the commands printed into its file."""
+    before, mark, rest = page.read_text(encoding="utf-8").partition(MARK)
+    _, end, after = rest.partition(END)
+    if not mark or not end:
+        raise ValueError(f"{page}: {MARK} or {END} is missing")
+    text = "\n".join([before + mark, "", *table(), "", end + after])
     page.write_text(text, encoding="utf-8")
+    printed.write_text("\n".join(output()), encoding="utf-8")
 
 
 def table() -> Iterator[str]:
@@ -61,16 +62,14 @@ def outcome(result: dict[str, Any] | None) -> str:
     return "works" if result["passed"] else "**fails**"
 
 
-def record() -> Iterator[str]:
-    """Yield what was printed, one peer after the other."""
-    yield "```text"
+def output() -> Iterator[str]:
+    """Yield the lines that the commands printed, peer by peer."""
     for name, result in read_results().items():
         found = ", ".join(f"{key} {value}" for key, value in result["versions"].items())
         yield f"{name}: Python {result['python']} on {result['system']}"
         yield f"  {found}"
         yield from (f"  {line}" for line in result["printed"])
         yield ""
-    yield "```"
 
 
 if __name__ == "__main__":

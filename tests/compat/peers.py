@@ -1,4 +1,4 @@
-"""The peers that the environment is tried with, as `peers.toml` has them."""
+"""The libraries that the environment is tried with, as `peers.toml` lists them."""
 
 import tomllib
 from dataclasses import dataclass
@@ -6,12 +6,14 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+# The environment runs on these. Where a peer does not pin one, it gets the version of
+# constraints.txt. Everything else is left to the peer, which may need other versions.
 RUNS_ON = ("gymnasium", "llvmlite", "numba", "numpy", "platformdirs", "torch")
 
 
 @dataclass(frozen=True)
 class Peer:
-    """Who is tried, and how; `peers.toml` says what each field is."""
+    """A library, and how it is tried; `peers.toml` explains the fields."""
 
     name: str
     title: str
@@ -21,17 +23,19 @@ class Peer:
     commands: tuple[str, ...]
 
     def constraints(self) -> list[str]:
-        """Return the pins of constraints.txt of what the environment runs on and the peer leaves.
-
-        Not of everything: a trainer may need others of what it brings along.
-        """
+        """Return the pins of constraints.txt for what the environment runs on."""
         wanted = {*RUNS_ON} - {package(pin) for pin in self.requirements}
         lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
         return [line for line in lines if package(line) in wanted]
 
+    def supports(self, python: tuple[int, int]) -> bool:
+        """Tell whether the requirements have wheels for a version of Python."""
+        oldest, newest = (tuple(map(int, version.split("."))) for version in self.python)
+        return oldest <= python <= newest
+
 
 def package(pin: str) -> str:
-    """Return the name of what is pinned, as package indices spell it."""
+    """Return the name of the pinned package, as package indices spell it."""
     return pin.partition("==")[0].lower().replace("_", "-")
 
 

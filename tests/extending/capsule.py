@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from arkanoid.envs import ArkanoidEnv
-from arkanoid.envs.draw.palette import CAPSULE, LUMA, PALETTE
+from arkanoid.envs.draw.palette import CAPSULE_BODY, LUMA, PALETTE
 from arkanoid.envs.game.capsules import capsule_by_weight
 from arkanoid.envs.observe.planes import STATUS
 from arkanoid.envs.rules import CAPSULES, FAST, PADDLE_TOP
@@ -22,12 +22,12 @@ assert observation[env.layout["capsule"]].tolist() == [0, 0, 0, 0, 0, 0, 0, 1]
 while world.capsule == FAST:
     env.step(NOOP)
 assert (world.capsules_caught, world.speed_stage) == (1, 2)
-# A stage is a quarter of the speed at the first.
+# Each stage adds a quarter of the first stage's speed.
 assert abs(math.hypot(world.ball_vx[0], world.ball_vy[0]) / slow - 1.5) < 1e-12
 
 assert "capsule_fast" in STATUS
 assert sorted(STATUS.values()) == list(range(len(STATUS)))
-colours = PALETTE[CAPSULE + 1 : CAPSULE + 1 + CAPSULES]
+colours = PALETTE[CAPSULE_BODY + 1 : CAPSULE_BODY + 1 + CAPSULES]
 assert np.diff(np.sort(colours @ LUMA)).min() >= 20
 
 drawn = [capsule_by_weight((place + 0.5) / 65536) for place in range(65536)]

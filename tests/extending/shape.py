@@ -1,6 +1,7 @@
-"""With the changes of `docs/extending.md`: a pill, beside GEOS (through Shapely).
+"""With the changes of `docs/extending.md`: a pill agrees with GEOS (through Shapely).
 
-What overlaps, is moved apart and meets is measured by the cores' distance, which Shapely knows.
+Overlaps, separations and impacts are compared with the distance between the cores, which Shapely
+computes.
 """
 
 import math
@@ -23,7 +24,7 @@ from arkanoid.physics import (
 )
 from shapely import affinity
 
-FAR = 1e3  # the size of what stands for a half-plane
+FAR = 1e3  # the size of the box that represents a half-plane
 NEAR = 1e-9
 RNG = np.random.default_rng(0)
 
@@ -44,7 +45,7 @@ PARTNERS: tuple[Callable[[], Collider], ...] = (
 
 
 def core_of(collider: Collider) -> shapely.Geometry:
-    """Return a core about the origin, made of what the collider was made of."""
+    """Return a collider's core about the origin, built from the collider's arguments."""
     match collider:
         case Particle():
             return shapely.Point(0, 0)
@@ -71,13 +72,13 @@ def placed(body: Body) -> shapely.Geometry:
 
 
 def gap(a: Body, b: Body, way: np.ndarray | tuple[float, float] = (0.0, 0.0)) -> float:
-    """Return how far apart two are when b has gone a way; what overlaps has less than 0."""
+    """Return the gap between two bodies after b has moved a way; below 0 if they overlap."""
     cores = placed(a), affinity.translate(placed(b), *way)
     return cores[0].distance(cores[1]) - a.collider.rounding - b.collider.rounding
 
 
 def check_contact(a: Body, b: Body) -> bool:
-    """Check how two overlap; return whether they do."""
+    """Check the contact of two bodies; return whether they overlap."""
     found = contact(a, b)
     if found is None:
         assert gap(a, b) > -NEAR
@@ -95,7 +96,7 @@ def check_contact(a: Body, b: Body) -> bool:
 
 
 def check_impact(a: Body, b: Body) -> bool:
-    """Check when b meets a; return whether it does."""
+    """Check when b hits a; return whether it does."""
     impact = time_of_impact(a, b)
     last = 12.0 if impact is None else 0.999 * impact.time
     assert min(gap(a, b, b.velocity * time) for time in np.linspace(0, last, 40)) > -NEAR

@@ -1,7 +1,7 @@
-"""What the engine's tests share.
+"""Settings of the engine's tests.
 
-An example may be the first call of a kernel, which is compiled then: that took longer than
-Hypothesis allows an example, in an empty cache and beside other programs, and a test failed.
+An example may be the first call of a kernel, which is then compiled. With an empty cache and beside
+other programs that took longer than Hypothesis allows for an example, and a test failed.
 """
 
 from hypothesis import settings

@@ -1,4 +1,4 @@
-"""The object API: everyone's own classes, what is written back, and what is refused."""
+"""The operations on objects: users' classes, what is written back, and what is refused."""
 
 import math
 import pickle
@@ -33,7 +33,7 @@ from arkanoid.physics import (
 
 @dataclass
 class Ghost:
-    """Someone's own class: it has what it needs and inherits nothing."""
+    """A user's own class: it has what it needs and inherits nothing."""
 
     position: Any
     velocity: Any = (0.0, 0.0)
@@ -42,13 +42,13 @@ class Ghost:
 
 
 class Wall:
-    """Another one, as poor as can be: a shape and a place that cannot be assigned."""
+    """Another one, with as little as possible: a collider, and a position that is read-only."""
 
     collider = AxisAlignedHalfPlane("+y")
     position = property(lambda self: (0.0, 0.0))
 
 
-def test_ones_own_classes_take_part() -> None:
+def test_users_classes_take_part() -> None:
     ghost, wall = Ghost((3.0, 0.5), (1.0, -2.0)), Wall()
     assert detect(ghost, wall)
     assert detect(wall, ghost)
@@ -64,7 +64,7 @@ def test_ones_own_classes_take_part() -> None:
     assert not collide(ghost, wall)
 
 
-def test_the_protocols_say_who_can_what() -> None:
+def test_protocols_tell_what_an_object_can_do() -> None:
     ghost, wall = Ghost((0.0, 0.0)), Wall()
     body = Body(Particle(1))
     for item in (ghost, wall, body):
@@ -76,14 +76,14 @@ def test_the_protocols_say_who_can_what() -> None:
 
 
 @pytest.mark.parametrize("kind", [tuple, list, np.array])
-def test_positions_and_velocities_come_back_as_what_they_were(kind: Any) -> None:
+def test_positions_and_velocities_keep_their_type(kind: Any) -> None:
     old_position, old_velocity = kind([0, 0]), kind([1, 0])
     ghost = Ghost(old_position, old_velocity)
     assert collide(ghost, Ghost((1.5, 0.0), (-1.0, 0.0)))
     assert type(ghost.position) is type(old_position)
     assert list(ghost.position) == [-0.25, 0]
     assert list(ghost.velocity) == [-1, 0]
-    # Never written into: others may hold them.
+    # The old values do not change: others may refer to them.
     assert list(old_position) == [0, 0]
     assert list(old_velocity) == [1, 0]
 
@@ -99,7 +99,7 @@ def test_relaxation_shares_by_the_reciprocal_of_mass() -> None:
     assert a.velocity.tolist() == [0, 0]
 
 
-def test_what_has_no_mass_stays() -> None:
+def test_a_body_without_mass_stays() -> None:
     a, b = Body(Particle(1), (0, 0)), Body(Particle(1), (1, 0), mass=1e9)
     assert collide(a, b)
     assert a.position.tolist() == [0, 0]
@@ -117,7 +117,7 @@ def test_a_bounce_returns_the_impulse() -> None:
     assert bounce(a, b, (1, 0)) == -1.5 * 4 / 1
     assert a.velocity.tolist() == [0, 1]
     assert b.velocity.tolist() == [2, 0]
-    # They part now: nothing happens, along a normal of any length.
+    # They separate now: nothing happens, along a normal of any length.
     assert bounce(a, b, (7, 0)) == 0
     assert bounce(a, b, (-7, 0), restitution=0) == pytest.approx(-2)
     assert a.velocity[0] == b.velocity[0]
@@ -157,7 +157,7 @@ def test_the_first_time_of_impact() -> None:
     assert a.position.tolist() == [0, 0]
 
 
-def test_what_nothing_separates_says_so() -> None:
+def test_relaxing_inseparable_regions_is_an_error() -> None:
     a, b = Body(HalfPlane((1, 1)), mass=1.0), Body(HalfPlane((1, 0)), (5, 5))
     assert detect(a, b)
     overlap = contact(a, b)
@@ -189,7 +189,7 @@ def test_what_nothing_separates_says_so() -> None:
         (SimpleNamespace(collider=Particle(1), position=3), "position must be two numbers"),
     ],
 )
-def test_what_an_object_lacks_is_named(item: Any, words: str) -> None:
+def test_a_missing_attribute_is_named(item: Any, words: str) -> None:
     body = Body(Particle(1))
     for pair in ((item, body), (body, item)):
         for operation in (detect, contact, time_of_impact, collide):
@@ -253,7 +253,7 @@ def test_a_body_checks_and_copies_what_it_is_given() -> None:
     assert twin.position.tolist() == [2, 3]
 
 
-# Figures published elsewhere, by which engines are compared.
+# Published figures, by which engines are compared.
 
 
 def box(width: float, height: float, *position: float, **more: Any) -> Body:
@@ -294,7 +294,7 @@ def test_boxes_separate_along_the_shorter_way(offset: Any, depth: float, normal:
         assert overlap.normal.tolist() == list(normal)
 
 
-def test_two_discs() -> None:
+def test_two_discs_in_closed_form() -> None:
     overlap = contact(Body(Particle(10), (0, 0)), Body(Particle(10), (5, 3)))
     assert overlap is not None
     assert overlap.depth == pytest.approx(14.16904810, abs=1e-8)
@@ -308,7 +308,7 @@ def test_two_discs() -> None:
     "square", [AxisAlignedRectangle(2, 2), Convex([(-1, -1), (1, -1), (1, 1), (-1, 1)])]
 )
 def test_a_disc_centred_on_a_corner(square: Collider, corner: Any) -> None:
-    """No direction out is given by the nearest point; one of the corner's faces is it."""
+    """The nearest point gives no direction out: the normal is that of one of the corner's faces."""
     disc, block = Body(Particle(0.5), corner, mass=1), Body(square)
     overlap = contact(disc, block)
     assert overlap is not None
@@ -319,7 +319,7 @@ def test_a_disc_centred_on_a_corner(square: Collider, corner: Any) -> None:
     assert not detect(disc, block)
 
 
-def test_coincident_discs_part() -> None:
+def test_coincident_discs_separate() -> None:
     a, b = Body(Particle(1), (7, 7), mass=1), Body(Particle(2), (7, 7), mass=3)
     assert collide(a, b)
     assert np.linalg.norm(a.position - b.position) == 3
@@ -330,7 +330,7 @@ def test_coincident_discs_part() -> None:
 
 
 def test_a_disc_in_the_concave_corner_of_two_boxes_reverses() -> None:
-    """It meets both at once; bounced off one after the other it flies back, to the bit."""
+    """It meets both at once, bounces off both, and returns with exactly the opposite velocity."""
     ball = Body(Particle(0.5), (0, 0), (0.3, 0.7), mass=1)
     right, above = box(1, 9, 3, 0), box(9, 1, 0, 3)
     ball.position = (2 - 0.3 * 4, 2 - 0.7 * 4)
@@ -344,7 +344,7 @@ def test_a_disc_in_the_concave_corner_of_two_boxes_reverses() -> None:
 
 @pytest.mark.parametrize("e", [1.0, 0.5, 0.0])
 def test_two_discs_of_unequal_mass_through_their_first_impact(e: float) -> None:
-    """Offset discs: what is along the line of centres follows the closed form, the rest stays."""
+    """Velocities along the line of centres follow the closed form; across it they stay."""
     a = Body(Particle(1), (0, 0), (5, 0), mass=2, restitution=e)
     b = Body(Particle(2), (10, 1.8), (-1, 0), mass=6)
     impact = time_of_impact(a, b)

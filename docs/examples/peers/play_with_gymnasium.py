@@ -2,8 +2,8 @@
 
     python play_with_gymnasium.py [steps]
 
-After so many steps it ends by itself. Without a display: `SDL_VIDEODRIVER=dummy`. The game's own
-player, with pauses, mouse and replays, is `arkanoid play`.
+It stops after this number of steps. Without a display, set `SDL_VIDEODRIVER=dummy`. The game's own
+player, `arkanoid play`, has pauses, the mouse and replays.
 """
 
 import sys
@@ -15,14 +15,14 @@ from gymnasium.utils.play import play
 
 
 class Counter:
-    """Ends the play after some steps, and knows the score."""
+    """Counts the score, and ends the game after some steps."""
 
     def __init__(self, steps: float) -> None:
         self.left = steps
         self.score = 0
 
     def __call__(self, *step: Any) -> None:
-        """Take what `play` tells of a step; the info is last."""
+        """Read what `play` passes after each step; the last argument is the info."""
         self.score = step[-1].get("score", 0)
         self.left -= 1
         if self.left <= 0:
@@ -30,7 +30,7 @@ class Counter:
 
 
 def main() -> None:
-    """Play."""
+    """Play one game in a window."""
     counter = Counter(float(sys.argv[1]) if len(sys.argv) > 1 else float("inf"))
     play(gym.make("arkanoid:Arkanoid-v0", render_mode="rgb_array"), seed=0, callback=counter)
     print(f"played, {counter.score} points")

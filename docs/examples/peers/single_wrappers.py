@@ -1,8 +1,8 @@
-"""Gymnasium's wrappers for one environment: the stack for pictures, films, statistics, clocks.
+"""Gymnasium's wrappers for single environments: pictures, films, statistics, clocks, actions.
 
-`AtariPreprocessing` itself is for the emulator's environments alone. What it does is here by
-keywords, `observation="rgb", grey=True, stack=4`, and frames are skipped without being drawn; or by
-these wrappers, one by one.
+`AtariPreprocessing` itself works only with the Atari emulator. The keywords `observation="rgb",
+grey=True, stack=4` give such pictures, without drawing the frames that are skipped. The wrappers
+below make them step by step.
 """
 
 from pathlib import Path
@@ -16,7 +16,7 @@ GAME = "arkanoid:Arkanoid-v0"
 
 
 def play(env: gym.Env, steps: int = 200) -> np.ndarray:
-    """Play at random, and return what was observed last."""
+    """Play at random, and return the last observation."""
     observation, _ = env.reset(seed=0)
     env.action_space.seed(0)
     for _ in range(steps):
@@ -29,7 +29,7 @@ def play(env: gym.Env, steps: int = 200) -> np.ndarray:
 
 
 def atari_like() -> gym.Env:
-    """Return the game as Atari's are seen: four grey pictures of 84 by 84, four ticks apart."""
+    """Return the game as Atari is observed: four grey pictures of 84 × 84, four ticks apart."""
     env = gym.make(GAME, observation="rgb", size=(168, 132), frame_skip=1)
     env = wrappers.TransformObservation(
         env, lambda seen: seen.transpose(1, 2, 0), gym.spaces.Box(0, 255, (168, 132, 3), np.uint8)
@@ -40,7 +40,7 @@ def atari_like() -> gym.Env:
 
 
 def main() -> None:
-    """Check the environment, and play through several stacks of wrappers."""
+    """Check the environment, and play it in several stacks of wrappers."""
     check_env(gym.make(GAME, render_mode="rgb_array").unwrapped)
     print("check_env: passed")
     print("like Atari's, by wrappers:", *play(atari_like()).shape)

@@ -1,6 +1,6 @@
-"""Sb3-contrib: an agent with a memory on the native batch, and one that learns off the policy.
+"""Sb3-contrib on the native batch: a recurrent agent, and one that learns off-policy.
 
-Both take the same adapter as stable-baselines3 itself: see `train_with_sb3.py`.
+Both use the same adapter as stable-baselines3: see `train_with_sb3.py`.
 """
 
 import gymnasium as gym
@@ -12,7 +12,7 @@ GAME = "arkanoid:ArkanoidLite-v0"
 
 
 def native(count: int) -> VecEnv:
-    """Return `count` games that one kernel steps."""
+    """Return `count` games as one native batch."""
     worlds = gym.make_vec(
         GAME,
         count,
@@ -25,7 +25,7 @@ def native(count: int) -> VecEnv:
 
 
 def main() -> None:
-    """Train each a little."""
+    """Train both a little."""
     remembers = RecurrentPPO("MlpLstmPolicy", native(16), n_steps=64, n_epochs=2, seed=0)
     remembers.learn(4096)
     print(f"RecurrentPPO: {remembers.num_timesteps} steps, {episodes(remembers)} episodes")
@@ -36,7 +36,7 @@ def main() -> None:
 
 
 def episodes(agent: RecurrentPPO | QRDQN) -> int:
-    """Return how many of the latest episodes the agent knows the return of."""
+    """Return the number of episodes whose returns the agent has kept."""
     return len(agent.ep_info_buffer or [])
 
 

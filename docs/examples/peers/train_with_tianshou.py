@@ -1,7 +1,7 @@
 """Tianshou 2: PPO on its own vector of environments, with a collector and a few short epochs.
 
-Tianshou resets the episodes that end itself, so it takes single environments, not Gymnasium's
-vector environments.
+Tianshou resets finished episodes itself, so it takes single environments and not Gymnasium's vector
+environments.
 """
 
 import gymnasium as gym
@@ -17,12 +17,12 @@ from tianshou.utils.net.discrete import DiscreteActor, DiscreteCritic
 
 
 def game() -> gym.Env:
-    """Return a game of one life."""
+    """Return a game with one life."""
     return gym.make("arkanoid:ArkanoidLite-v0", levels="ripple", lives=1)
 
 
 def agent(env: gym.Env) -> PPO:
-    """Return PPO with a small network for the policy and another one for the values."""
+    """Return PPO with one small network for the policy and one for the values."""
     shape, actions = env.observation_space.shape, env.action_space.n
     seen = [Net(state_shape=shape, hidden_sizes=[64, 64]) for _ in range(2)]
     actor = DiscreteActor(preprocess_net=seen[0], action_shape=actions, softmax_output=False)
@@ -32,7 +32,7 @@ def agent(env: gym.Env) -> PPO:
 
 
 def main() -> None:
-    """Collect some play, then train."""
+    """Collect some steps, then train."""
     torch.manual_seed(0)
     ppo = agent(game())
     worlds = DummyVectorEnv([game] * 8)

@@ -1,7 +1,7 @@
-"""TorchRL: one game by name, and many as the native batch, sampled by a collector.
+"""TorchRL: one game by its id, and a native batch of many games, sampled by a collector.
 
 TorchRL resets worlds itself, so the batch is made with `autoreset_mode="Disabled"`. "SameStep"
-works, too, and then what `info` holds is in the data as well; "NextStep" is refused.
+works, too, and adds the numbers of `info` to the data. TorchRL refuses "NextStep".
 """
 
 import gymnasium as gym
@@ -17,7 +17,7 @@ WORLDS = 32
 
 
 def batch(mode: str) -> GymWrapper:
-    """Return many games as one TorchRL environment."""
+    """Return a native batch as one TorchRL environment."""
     worlds = gym.make_vec(
         GAME, WORLDS, vectorization_mode="vector_entry_point", autoreset_mode=mode, lives=1
     )
@@ -37,7 +37,7 @@ def actor(env: GymWrapper) -> ProbabilisticActor:
 
 
 def main() -> None:
-    """Check what TorchRL makes of the games, and collect some play."""
+    """Check TorchRL's environments, and collect some steps."""
     torch.manual_seed(0)
     single = GymEnv(GAME)
     check_env_specs(single)
@@ -49,7 +49,7 @@ def main() -> None:
         done = 0
         for data in Collector(env, actor(env), frames_per_batch=6400, total_frames=12_800):
             done += int(data["next", "done"].sum())
-            # An episode goes on where it was, and the next one begins elsewhere.
+            # Within an episode, each observation is the one that the step before led to.
             same = (data["next", "observation"][:, :-1] == data["observation"][:, 1:]).all(-1)
             assert torch.equal(same, ~data["next", "done"][:, :-1, 0])
         print(f"{WORLDS} games, {mode}: {done} episodes in two batches of {data.numel()} steps")

@@ -1,6 +1,6 @@
 """Films of the first world of a vector environment, with Gymnasium's `RecordVideo` (from 1.2 on).
 
-In the mode "NextStep", its default: in "SameStep" a film has not its episode's last picture.
+It uses the default mode "NextStep". In "SameStep" a film lacks the last picture of its episode.
 """
 
 from pathlib import Path
@@ -10,7 +10,7 @@ from gymnasium.wrappers.vector import RecordVideo
 
 
 def main() -> None:
-    """Film sixty steps of random play, from the first one on."""
+    """Film the first sixty steps of random play."""
     worlds = gym.make_vec(
         "arkanoid:ArkanoidLite-v0",
         num_envs=8,

@@ -1,7 +1,7 @@
 """Gymnasium's wrappers for vector environments, on the native batch.
 
-`NormalizeObservation` wants the mode that Gymnasium has by default, `autoreset_mode="NextStep"`:
-the step after the end of an episode begins the next one, and takes no action.
+`NormalizeObservation` needs Gymnasium's default mode, `autoreset_mode="NextStep"`: the step after
+the end of an episode ignores its action and begins the next episode.
 """
 
 import gymnasium as gym
@@ -21,7 +21,7 @@ def make(**keywords: object) -> gym.vector.VectorEnv:
 
 
 def play(env: gym.vector.VectorEnv) -> np.ndarray:
-    """Play at random, and return what was observed last."""
+    """Play at random, and return the last observations."""
     observations, _ = env.reset(seed=0)
     env.action_space.seed(0)
     for _ in range(STEPS):
@@ -32,7 +32,7 @@ def play(env: gym.vector.VectorEnv) -> np.ndarray:
 
 
 def main() -> None:
-    """Play through several stacks of wrappers."""
+    """Play in several stacks of wrappers."""
     numbers = vector.RecordEpisodeStatistics(make())
     scaled = vector.NormalizeReward(vector.NormalizeObservation(numbers), gamma=0.99)
     play(vector.ClipReward(scaled, -10, 10))

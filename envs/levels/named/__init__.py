@@ -1,1 +1,1 @@
-"""The named rounds, as text."""
+"""The named levels, as text files."""

@@ -1,14 +1,14 @@
-"""What is compared: this project's engine, and its peers as far as they are installed.
+"""The engines that are compared: this project's, and those of its peers that are installed.
 
-Every module here holds one class, and all classes are used in the same way::
+Every module holds one class, and all classes are used in the same way::
 
     engine = Pymunk(scene, accurate=False, count=False)
-    contacts = engine.run(steps)  # contacts that began; 0 unless asked to count
-    positions, velocities = engine.state()  # float64 [n, 2]; velocities in units a step
+    contacts = engine.run(steps)  # contacts that began; 0 unless count is set
+    positions, velocities = engine.state()  # float64 [n, 2]; velocities in units per step
 
-``accurate`` picks one of the two settings of a peer, found by trying (each class says which): one
-as fast as it goes, one that keeps the energy as well as it can. Counting costs the peers a callback
-or a list a contact, so speeds are measured without it, and the same flight is counted apart.
+``accurate`` chooses between two settings of a peer, which were found by trial (each class names
+them): the fastest, and the one that conserves energy best. Counting costs the peers a callback or a
+list per contact. So speeds are measured without it, and a second run counts.
 """
 
 import importlib
@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from .scene import Scene
 
-# What a peer is called: its package, and the module here.
+# The name of each peer: its package, and its module here.
 PEERS = {
     "pymunk": ("pymunk", "pymunk_engine"),
     "Box2D 2.3": ("Box2D", "box2d_2"),
@@ -33,14 +33,14 @@ class Engine(Protocol):
     def __init__(self, scene: Scene, *, accurate: bool = False, count: bool = False) -> None: ...
 
     def run(self, steps: int) -> int:
-        """Take steps; return the contacts that began, if they are counted."""
+        """Take steps; return the number of contacts that began, if they are counted."""
 
     def state(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Return positions and velocities of the discs, [n, 2], in units and units a step."""
+        """Return positions and velocities of the discs, [n, 2], in units and units per step."""
 
 
 def installed_peers() -> dict[str, type[Engine] | None]:
-    """Return the class of every peer by its name; None if it is not installed."""
+    """Return the class of each peer by its name; None for a peer that is not installed."""
     return {name: peer(package, module) for name, (package, module) in PEERS.items()}
 
 

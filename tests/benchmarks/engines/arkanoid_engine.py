@@ -26,14 +26,14 @@ def build(scene: Scene) -> World:
         bodies += [Body(AxisAlignedHalfPlane(direction)) for direction in ("+x", "+y")]
         bodies += [Body(AxisAlignedHalfPlane(direction), scene.room) for direction in ("-x", "-y")]
     world = World(bodies)
-    world.step(0.0)  # makes the grid and all that, as the peers do while bodies are added
+    world.step(0.0)  # builds the grid, which the peers build while bodies are added
     return world
 
 
 class Arkanoid:
-    """One world. There is one setting only, and hits are always returned.
+    """One world, one step per call, as the peers have it.
 
-    Subclasses call it differently; ``steps_per_call`` is 1 like the peers'.
+    There is only one setting, and hits are always returned.
     """
 
     steps_per_call = 1
@@ -53,16 +53,16 @@ class Arkanoid:
 
 
 class ManySteps(Arkanoid):
-    """One world, a thousand steps a call."""
+    """One world, a thousand steps per call."""
 
     steps_per_call = 1000
 
 
 class Batch:
-    """Worlds stepped together: copies of the scene's, but for the headings of their discs."""
+    """Worlds stepped together: copies of the scene's, except for the discs' velocities."""
 
     def __init__(self, scene: Scene, velocities: FloatArray) -> None:
-        """Velocities: float64 [worlds, 2], of the only disc of each."""
+        """Build the batch; velocities: float64 [worlds, 2], of the only disc of each world."""
         self.batch = WorldBatch(build(scene), len(velocities))
         self.batch.velocities[:, 0] = velocities
 

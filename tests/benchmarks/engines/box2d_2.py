@@ -5,23 +5,23 @@ import numpy as np
 
 from .scene import FloatArray, Scene
 
-# Seconds. Box2D lets bounces slower than 1 m/s die (b2_velocityThreshold, which the binding cannot
-# change): steps this short make everything fast, and its other constants count in steps.
+# Seconds. Box2D ends bounces slower than 1 m/s (b2_velocityThreshold, which the binding cannot
+# change). Steps this short make everything faster, and its other constants count in steps.
 STEP = 1e-3
-FARTHEST = 2.0  # metres a step: Box2D slows down what is faster (b2_maxTranslation)
-SLOP = 0.005  # metres: smaller than that nothing can be (b2_linearSlop)
+FARTHEST = 2.0  # metres per step: Box2D slows down faster bodies (b2_maxTranslation)
+SLOP = 0.005  # metres: no shape can be smaller (b2_linearSlop)
 SIZE = 0.5  # metres: the radius of a disc; Box2D is meant for 0.1 to 10 m
 
 
 class Box2D2:
-    """Box2D 2.3, single precision. No bullets: static boxes stop everything without, too.
+    """Box2D 2.3, single precision. It needs no bullets: static boxes stop every body.
 
     Fast: the 8 velocity and 3 position iterations of its manual. Accurate: 1000 and 10.
     """
 
     def __init__(self, scene: Scene, *, accurate: bool = False, count: bool = False) -> None:
         self.iterations = (1000, 10) if accurate else (8, 3)
-        # Metres in a unit.
+        # Metres per unit.
         self.unit = max(min(SIZE / scene.radius, FARTHEST / scene.speed), SLOP / scene.radius)
         self.world = Box2D.b2World(gravity=(0, 0), doSleep=False)
         self.discs = [

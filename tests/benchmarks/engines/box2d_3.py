@@ -5,19 +5,19 @@ import pyb2d3
 
 from .scene import FloatArray, Scene
 
-STEP = 1 / 60  # seconds; shorter ones make nothing better, and some scenes worse
+STEP = 1 / 60  # seconds; shorter steps improve no scene, and make some worse
 
 
 class Box2D3:
-    """Box2D 3.1, single precision, soft contacts. No bullets, as in the older one.
+    """Box2D 3.1, single precision, soft contacts, no bullets.
 
-    Fast: discs of 1/2 m. Accurate: discs of 2.5 m. Four sub-steps, as its manual has it. No
-    restitution threshold and no highest speed; other contact tunings keep the energy no better.
+    Fast: discs of 1/2 m. Accurate: discs of 2.5 m. Four sub-steps, as in its manual. No threshold
+    of restitution and no highest speed; other contact tunings conserve energy no better.
     """
 
     def __init__(self, scene: Scene, *, accurate: bool = False, count: bool = False) -> None:
         self.count = count
-        self.unit = (2.5 if accurate else 0.5) / scene.radius  # metres in a unit
+        self.unit = (2.5 if accurate else 0.5) / scene.radius  # metres per unit
         self.world = pyb2d3.World(
             gravity=(0, 0), restitution_threshold=0.0, maximum_linear_speed=1e9
         )

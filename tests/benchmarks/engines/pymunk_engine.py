@@ -7,15 +7,15 @@ import pymunk
 
 from .scene import FloatArray, Scene
 
-STEP = 1 / 60  # seconds; Chipmunk's constants are meant for it, and it is as fast as any
+STEP = 1 / 60  # seconds; Chipmunk's constants are made for it, and no other step is faster
 
 
 class Pymunk:
-    """Chipmunk. A disc moves first and is found to overlap then: nothing sees what it flies over.
+    """Chipmunk. A disc moves first, and overlaps are found then: it can fly over a thin box.
 
-    Fast: the defaults, 10 iterations. Accurate: 1000; with fewer there is more or less energy
-    after a ball has met two bricks at once. One static body holds all boxes. The spatial hash is
-    slower here than the default tree, and another slop or bias keeps the energy no better.
+    Fast: the defaults, 10 iterations. Accurate: 1000; with fewer, the energy changes when a ball
+    hits two bricks at once. One static body holds all boxes. The spatial hash is slower here than
+    the default tree, and another slop or bias conserves energy no better.
     """
 
     def __init__(self, scene: Scene, *, accurate: bool = False, count: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""The scenes: equal discs among boxes, in a room. Every engine builds the same ones."""
+"""The scenes: equal discs among boxes, in a room. Every engine builds the same scenes."""
 
 import math
 from typing import NamedTuple
@@ -9,19 +9,19 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 BALL = 1 / 8  # radius of the game's ball, in widths of a brick
-BALL_SPEED = 0.176  # units a tick
+BALL_SPEED = 0.176  # units per tick
 FIELD = (11.0, 14.0)
-THICK = 10.0  # units: walls of a room as a peer builds them, so that nothing is soon behind them
+THICK = 10.0  # units: of the walls that peers build, so that no disc gets behind them soon
 
 
 class Scene(NamedTuple):
-    """What there is at the start. One step is one unit of time; all bounces are elastic.
+    """What is there at the start. One step is one unit of time; all bounces are elastic.
 
     positions: float64 [n, 2], the centres of the discs.
-    velocities: float64 [n, 2], units a step.
+    velocities: float64 [n, 2], units per step.
     radius: of every disc; each has mass 1.
-    boxes: (x, y, width, height) each, static, (x, y) being the centre.
-    room: (width, height) of the rectangle from (0, 0) that the discs are in; None: no walls.
+    boxes: (x, y, width, height) of every static box; (x, y) is its centre.
+    room: (width, height) of the rectangle from (0, 0) that holds the discs; None: no walls.
     """
 
     positions: FloatArray
@@ -32,11 +32,11 @@ class Scene(NamedTuple):
 
     @property
     def speed(self) -> float:
-        """The speed of the fastest disc, units a step."""
+        """The speed of the fastest disc, units per step."""
         return float(np.hypot(*self.velocities.T).max())
 
     def thick_walls(self) -> tuple[tuple[float, float, float, float], ...]:
-        """The walls of the room as boxes (x, y, width, height) that close its corners too."""
+        """Return the walls as boxes (x, y, width, height), which close the corners, too."""
         if self.room is None:
             return ()
         width, height = self.room
@@ -55,7 +55,7 @@ class Scene(NamedTuple):
 
 
 def breakout(heading: float) -> Scene:
-    """The game's ball at its base speed; ten by ten bricks at the left wall leave a channel.
+    """Return the game's ball at its base speed, and ten by ten bricks beside a channel.
 
     heading: of the ball, radians from the vertical.
     """
@@ -72,14 +72,14 @@ def breakout(heading: float) -> Scene:
 
 
 def headings(count: int) -> FloatArray:
-    """Return headings, radians: 20 to 70 degrees from the vertical, to both sides in turn."""
+    """Return headings in radians: 20 to 70 degrees from the vertical, on alternating sides."""
     return np.radians(np.linspace(20, 70, count)) * np.where(np.arange(count) % 2, -1, 1)
 
 
 def billiards(count: int = 1000, packing: float = 0.22, path: float = 0.1) -> Scene:
-    """Discs that fill a share ``packing`` of a square room, all equally fast.
+    """Return equally fast discs that fill the share ``packing`` of a square room.
 
-    path: what a disc moves in a step, in radii.
+    path: radii that a disc moves per step.
     """
     rng = np.random.default_rng(0)
     radius = 0.5
@@ -87,7 +87,7 @@ def billiards(count: int = 1000, packing: float = 0.22, path: float = 0.1) -> Sc
     columns = math.ceil(math.sqrt(count))
     cell = side / columns
     cells = rng.permutation(np.stack(np.divmod(np.arange(columns**2), columns), axis=1))[:count]
-    jitter = rng.uniform(-0.9, 0.9, (count, 2)) * (cell / 2 - radius)  # of them none overlap
+    jitter = rng.uniform(-0.9, 0.9, (count, 2)) * (cell / 2 - radius)  # no two overlap
     angle = rng.uniform(0, 2 * math.pi, count)
     return Scene(
         positions=(cells + 0.5) * cell + jitter,
@@ -98,7 +98,7 @@ def billiards(count: int = 1000, packing: float = 0.22, path: float = 0.1) -> Sc
 
 
 def volley(count: int = 200) -> Scene:
-    """Balls in lanes of their own, from 1 to 50 units a step fast, before a wall at x = 0."""
+    """Return balls in separate lanes, with 1 to 50 units per step, before a wall at x = 0."""
     rng = np.random.default_rng(0)
     speeds = np.linspace(1.0, 50.0, count)
     return Scene(
@@ -110,17 +110,17 @@ def volley(count: int = 200) -> Scene:
 
 
 def reflected(scene: Scene, steps: int) -> FloatArray:
-    """Return where the balls of a volley are after some steps: x of each, in closed form."""
+    """Return x of each ball of a volley after some steps, in closed form."""
     surface = -scene.boxes[0][2] / 2 - scene.radius
     flown = scene.positions[:, 0] + steps * scene.velocities[:, 0]
     return np.where(flown > surface, 2 * surface - flown, flown)
 
 
-CORRIDOR = 9.6  # units that a ball's centre has from wall to wall
+CORRIDOR = 9.6  # units that a ball's centre moves from wall to wall
 
 
 def corridor(speed: float) -> Scene:
-    """One ball, in the middle between two walls that it flies to and fro between."""
+    """Return one ball that flies to and fro between two walls, and starts in the middle."""
     width = CORRIDOR + 2 * BALL
     return Scene(
         positions=np.array([[width / 2, width / 2]]),
@@ -131,5 +131,5 @@ def corridor(speed: float) -> Scene:
 
 
 def bounces_due(speed: float, steps: int) -> int:
-    """Return how many bounces the ball of a corridor has made after some steps."""
+    """Return how many bounces the ball of a corridor makes in some steps."""
     return math.floor((CORRIDOR / 2 + speed * steps) / CORRIDOR)

@@ -1,10 +1,10 @@
-"""What is compared: this project's environments, and their peers as far as they are installed.
+"""The games that are compared: this project's, and those of its peers that are installed.
 
-Every module here has functions that make a `Game`, one way to play one of them::
+Every module has functions that make a `Game`, all of which are used in the same way::
 
-    game = ale.one()
-    game.play(100)  # decisions, of random actions; resets are included
-    game.worlds  # how many worlds take each of them
+    game = ale_games.one()
+    game.play(100)  # decisions, with random actions; resets are included
+    game.worlds  # the number of worlds that each decision steps
     game.close()
 """
 
@@ -18,22 +18,22 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-# What a peer is called (as its package on PyPI), and the module here.
+# The name of each peer, which is its package's, and its module here.
 PEERS = {
     "MinAtar": "minatar_games",
     "ale-py": "ale_games",
     "env-breakoutatari2600-turbo-native": "turbo_games",
 }
-ACTIONS = 1000  # decisions, after which the same actions come again
+ACTIONS = 1000  # decisions until the actions repeat
 
 
 class Game(Protocol):
-    """Some worlds of a game that are played together."""
+    """Worlds of a game that are played together."""
 
     worlds: int
 
     def play(self, decisions: int) -> None:
-        """Play decisions in every world."""
+        """Play a number of decisions in every world."""
 
     def close(self) -> None: ...
 
@@ -81,7 +81,7 @@ class Many:
 
 
 def peer(name: str) -> ModuleType | None:
-    """Return the module here for a peer; None if something that it needs is not installed."""
+    """Return the module for a peer; None if a package that it needs is not installed."""
     try:
         return importlib.import_module(f".{PEERS[name]}", __name__)
     except ImportError:

@@ -1,4 +1,4 @@
-"""Breakout of the Arcade Learning Environment: the Atari's program in an emulator."""
+"""Breakout of the Arcade Learning Environment: Atari's program in an emulator."""
 
 import ale_py
 import cv2
@@ -13,11 +13,11 @@ NAME = "ALE/Breakout-v5"
 
 
 def one() -> One:
-    """Pictures 84 × 84 in grey, frame skip 4, the brighter of the last two frames."""
+    """Return one world: grey pictures of 84 × 84, frame skip 4, the maximum of two frames."""
     cv2.setNumThreads(1)
     return One(AtariPreprocessing(gym.make(NAME, frameskip=1), frame_skip=4, screen_size=84))
 
 
 def many(worlds: int, stack: int) -> Many:
-    """Its native vector environment: the same pictures, drawn in C++, in one thread."""
+    """Return the native vector environment: the same pictures, made in C++, in one thread."""
     return Many(gym.make_vec(NAME, worlds, "vector_entry_point", num_threads=1, stack_num=stack))

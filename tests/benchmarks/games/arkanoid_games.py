@@ -9,12 +9,12 @@ from . import Many, One
 
 
 def one(name: str, **keywords: Any) -> One:
-    """One world, with the default wrappers."""
+    """Return one world, with the default wrappers."""
     return One(gym.make(name, **keywords))
 
 
 def many(name: str, worlds: int, threads: int = 1, **keywords: Any) -> Many:
-    """The native vector environment; observations are not copied."""
+    """Return the native vector environment; observations are not copied."""
     return Many(
         gym.make_vec(name, worlds, "vector_entry_point", copy=False, threads=threads, **keywords)
     )

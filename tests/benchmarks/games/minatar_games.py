@@ -12,7 +12,7 @@ from . import ACTIONS, One
 
 
 class Own:
-    """Its own class, without Gymnasium: act, then ask for the state."""
+    """MinAtar's own class, without Gymnasium: act, then ask for the state."""
 
     worlds = 1
 
@@ -42,7 +42,7 @@ def own() -> Own:
 
 
 def one() -> One:
-    """The same through `gym.make`, with the default wrappers."""
+    """Return the same game through `gym.make`, with the default wrappers."""
     name = "MinAtar/Breakout-v1"
     if name not in gym.registry:
         minatar.gym.register_envs()

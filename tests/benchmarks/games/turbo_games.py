@@ -11,7 +11,7 @@ NAME = env_breakoutatari2600_turbo_native.GYMNASIUM_ENV_ID
 
 
 class Turbo(Many):
-    """Its vector environment leaves it to the caller to begin new episodes."""
+    """Begins new episodes, which this vector environment leaves to the caller."""
 
     def play(self, decisions: int) -> None:
         step, reset = self.env.step, self.env.reset
@@ -23,7 +23,7 @@ class Turbo(Many):
 
 
 def many(worlds: int, stack: int) -> Turbo:
-    """Pictures 84 × 84 in grey, frame skip 4, in one thread; observations are not copied."""
+    """Return grey pictures of 84 × 84, frame skip 4, in one thread; nothing is copied."""
     return Turbo(
         gym.make_vec(
             NAME,

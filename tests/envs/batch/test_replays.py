@@ -1,9 +1,6 @@
 """Recorded games: small files, and each is played again bit for bit or refused."""
 
 import dataclasses
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +17,7 @@ from arkanoid.envs import (
 from arkanoid.envs.batch import replays
 from arkanoid.envs.batch.playback import replay_states
 from arkanoid.envs.batch.recorder import NOTE_EVERY
+from helpers.processes import INTERPRETED, run_program
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -39,7 +37,7 @@ def record(decisions=200, seed=0, options=None, **keywords):
 def play(env, decisions, seed=0):
     env.action_space.seed(seed)
     for _ in range(decisions):
-        if env._batch.worlds["done"][0]:
+        if env.state["done"]:
             break
         env.step(env.action_space.sample())
 
@@ -64,13 +62,7 @@ from arkanoid.envs.batch.playback import replay_states
 states = itertools.islice(replay_states({str(GOLDEN)!r}), {NOTE_EVERY} + 2)
 print(sum(1 for _ in states))
 """
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    done = run_program(program, warnings="default", changes=INTERPRETED)
     assert int(done.stdout) == NOTE_EVERY + 2
 
 

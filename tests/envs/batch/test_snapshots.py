@@ -2,10 +2,7 @@
 
 import copy
 import pickle
-import subprocess
-import sys
 import zlib
-from pathlib import Path
 
 import arkanoid  # noqa: F401
 import gymnasium as gym
@@ -15,6 +12,9 @@ from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
 from arkanoid.envs.batch import setup
 from arkanoid.envs.state import World
 from gymnasium.vector import AutoresetMode
+from helpers.processes import run_python
+from helpers.repository import EXAMPLES
+from helpers.states import latest_observations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -56,7 +56,7 @@ def play(env, steps, seed):
     shown = []
     for _ in range(steps):
         shown.append(bits(env.step(env.action_space.sample())))
-        over = env._batch.worlds["done"] != 0
+        over = np.atleast_1d(env.state["done"]) != 0
         if isinstance(env, ArkanoidEnv) and over[0]:
             shown.append(bits(env.reset()))
         elif env.metadata.get("autoreset_mode") is AutoresetMode.DISABLED and over.any():
@@ -163,7 +163,7 @@ def test_a_world_moves_between_a_vector_env_and_a_single_one(mode, seen):
     single = begun(steps=7, **keywords)
     for world in range(5):
         observation, _ = single.restore(vector.snapshot(world))
-        assert observation.tobytes() == vector._batch.observations[world].tobytes()
+        assert observation.tobytes() == latest_observations(vector)[world].tobytes()
     observations, infos = vector.spread(single.snapshot())
     assert all(row.tobytes() == observation.tobytes() for row in observations)
     assert len(set(infos["score"].tolist())) == 1
@@ -229,15 +229,7 @@ def test_a_copy_of_a_vector_env_goes_on_alike_and_alone(how, mode, seen):
 
 def test_the_example_of_a_search_clears_its_level(tmp_path):
     """Monte Carlo search with futures that start from snapshots."""
-    example = Path(__file__).parents[3] / "docs" / "examples" / "monte_carlo.py"
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(example)],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=True,
-    )
+    done = run_python(EXAMPLES / "monte_carlo.py", cwd=tmp_path)
     assert done.stdout.splitlines()[-1].startswith("cleared, with ")
 
 
@@ -390,4 +382,4 @@ def test_an_episode_that_is_over_has_no_place_where_the_next_would_have_begun():
     next_step = ArkanoidVectorEnv(2, autoreset_mode="NextStep", max_decisions=1)
     next_step.spread(snapshot)
     assert next_step.step(np.zeros(2, int))[-1]["score"].tolist() == [0, 0]
-    assert (next_step._batch.worlds["decisions"] == 0).all()
+    assert (next_step.state["decisions"] == 0).all()

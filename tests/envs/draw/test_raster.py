@@ -1,4 +1,4 @@
-"""Drawing primitives against areas that Shapely or a formula gives."""
+"""Drawing primitives against the areas that Shapely or a formula gives."""
 
 import math
 from collections.abc import Callable
@@ -11,7 +11,6 @@ from arkanoid.envs.draw.raster import (
     SUBLINES,
     convex_coverage,
     draw_line,
-    draw_ring,
     fill_convex,
     fill_disc,
     fill_rectangle,
@@ -29,10 +28,10 @@ from shapely.geometry.polygon import orient
 SIZE = 24
 WHITE = np.full(3, 255.0)
 GREY = np.array([255.0])
-# What storing a pixel as an integer costs, as coverage.
+# The error of storing a pixel as an integer, as coverage.
 ROUNDING = 0.5 / 255
-# A box filter along the normal of a straight edge against the pixel's true area: worst at 45
-# degrees, where the edge cuts off a corner that the filter does not see: (sqrt(2) - 1)^2 / 4.
+# The error of a box filter along the normal of a straight edge. It is largest at 45 degrees, where
+# the edge cuts off a corner of the pixel that the filter does not see: (sqrt(2) - 1)^2 / 4.
 SLANTED_EDGE = (math.sqrt(2) - 1) ** 2 / 4
 
 # The first example may compile kernels.
@@ -56,7 +55,7 @@ def exact_coverage(region: Any, size: int = SIZE) -> NDArray[np.float64]:
 
 
 def convex_shape(points: NDArray[np.float64]) -> tuple[Any, Any]:
-    """A `Shape` and its `Edge` records for counterclockwise points; only what drawing reads."""
+    """A `Shape` and its `Edge` records for counterclockwise points: only what drawing reads."""
     edges = np.zeros(len(points), Edge)
     edges["start_x"], edges["start_y"] = points.T
     edges["end_x"], edges["end_y"] = np.roll(points, -1, axis=0).T
@@ -101,7 +100,7 @@ def test_a_rectangle_shades_from_one_colour_to_the_other() -> None:
 
 @PROPERTY
 @given(x=middle, y=middle, radius=st.floats(0.05, 7.0))
-def test_a_discs_pixels_are_right_to_the_bound_of_its_integration(
+def test_a_discs_pixels_are_exact_to_the_bound_of_its_integration(
     x: float, y: float, radius: float
 ) -> None:
     exact = exact_coverage(Point(x, y).buffer(radius, quad_segs=512))
@@ -116,8 +115,8 @@ def test_a_discs_pixels_are_right_to_the_bound_of_its_integration(
             for row in range(SIZE)
         ]
     )
-    # The midpoint rule errs by at most half a step times the total variation of what it integrates:
-    # the width within a pixel may grow by 1 and shrink by 1.
+    # The midpoint rule errs by at most half a step times the total variation of the integrand:
+    # within a pixel the width may grow by 1 and shrink by 1.
     assert np.abs(drawn - exact).max() <= 2 * 0.5 / SUBLINES
     # The whole chord grows to 2 r and shrinks again.
     assert abs(drawn.sum() - math.pi * radius**2) <= 4 * radius * 0.5 / SUBLINES
@@ -150,10 +149,7 @@ def test_a_convex_polygon_covers_its_exact_area_in_every_pixel(
     shape, edges = convex_shape(points)
     drawn = np.array(
         [
-            [
-                convex_coverage(edges, 0, len(points), x, y, scale, row, column)
-                for column in range(SIZE)
-            ]
+            [convex_coverage(shape, edges, x, y, scale, row, column) for column in range(SIZE)]
             for row in range(SIZE)
         ]
     )
@@ -171,13 +167,13 @@ def test_a_convex_polygon_covers_its_exact_area_in_every_pixel(
     end=st.tuples(inside, inside),
     width=st.floats(1.0, 4.0),
 )
-def test_a_line_is_that_of_shapely_but_for_slanted_edges(
+def test_a_line_agrees_with_shapely_except_for_slanted_edges(
     start: tuple[float, float], end: tuple[float, float], width: float
 ) -> None:
     image = canvas()
     draw_line(image, *start, *end, width, GREY)
     exact = exact_coverage(LineString([start, end]).buffer(width / 2, quad_segs=64))
-    # Its round ends are no straight edges; a pixel away from them, two edges may err at once.
+    # At the round ends this bound does not hold; elsewhere a pixel may see both edges.
     middles = [[Point(column + 0.5, row + 0.5) for column in range(SIZE)] for row in range(SIZE)]
     away = np.array(
         [
@@ -198,23 +194,7 @@ def test_a_stroke_along_an_axis_is_covered_exactly(distance: float, half_width: 
     assert stroke_coverage(abs(distance), half_width) == pytest.approx(exact, abs=1e-12)
 
 
-@PROPERTY
-@given(x=inside, y=inside, radius=st.floats(4.0, 8.0), width=st.floats(1.0, 3.0))
-def test_a_ring_is_that_of_shapely_but_for_slanted_and_bent_edges(
-    x: float, y: float, radius: float, width: float
-) -> None:
-    image = canvas()
-    draw_ring(image, x, y, radius, width, GREY)
-    outer = Point(x, y).buffer(radius + width / 2, quad_segs=256)
-    inner = Point(x, y).buffer(radius - width / 2, quad_segs=256)
-    exact = exact_coverage(outer.difference(inner))
-    # Within a pixel (half a diagonal from its middle) a circle leaves its tangent by this much.
-    bend = 0.5 / (2 * (radius - width / 2))
-    error = np.abs(coverage(image) - exact).max()
-    assert error <= 2 * SLANTED_EDGE + bend + ROUNDING
-
-
-# Their sizes are sums of powers of two, so that moving them by whole pixels rounds nothing.
+# The sizes are sums of powers of two, so that moving by whole pixels causes no rounding.
 PRIMITIVES: dict[str, Draw] = {
     "rectangle": lambda image, x, y: fill_rectangle(
         image, x - 3.25, y - 2.125, x + 3.25, y + 2.125, WHITE, WHITE
@@ -223,7 +203,6 @@ PRIMITIVES: dict[str, Draw] = {
         image, x - 3.25, y - 2.125, x + 3.25, y + 2.125, 1.25, WHITE
     ),
     "disc": lambda image, x, y: fill_disc(image, x, y, 3.75, WHITE),
-    "ring": lambda image, x, y: draw_ring(image, x, y, 3.75, 1.5, WHITE),
     "line": lambda image, x, y: draw_line(image, x - 4.0, y, x + 4.0, y, 1.5, WHITE),
     "convex": lambda image, x, y: fill_convex(
         image,
@@ -242,7 +221,7 @@ PRIMITIVES: dict[str, Draw] = {
 @pytest.mark.parametrize("name", PRIMITIVES)
 @pytest.mark.parametrize("centre", [12.0, 12.5])
 def test_symmetric_shapes_draw_symmetric_pixels(name: str, centre: float) -> None:
-    """Left and right are the same to the bit, and no channel differs."""
+    """Left and right are equal bit for bit, and so are the channels."""
     image = canvas(3, size=int(2 * centre))
     PRIMITIVES[name](image, centre, centre)
     assert image.any()
@@ -254,14 +233,14 @@ def test_symmetric_shapes_draw_symmetric_pixels(name: str, centre: float) -> Non
 @PROPERTY
 @given(x=st.integers(-60, 60), y=st.integers(-60, 60), part=st.sampled_from([0.0, 0.25, 0.5]))
 def test_what_lies_outside_is_cut_off(name: str, x: int, y: int, part: float) -> None:
-    """A picture is the middle of a larger picture in which nothing is cut off."""
+    """The result equals the middle of a larger picture, in which nothing is cut off."""
     small, large = canvas(3), canvas(3, size=160)
     PRIMITIVES[name](small, x + part, y + part)
     PRIMITIVES[name](large, x + part + 64, y + part + 64)
     np.testing.assert_array_equal(small, large[64 : 64 + SIZE, 64 : 64 + SIZE])
 
 
-def test_colours_are_mixed_by_coverage() -> None:
+def test_colours_are_blended_by_coverage() -> None:
     image = np.full((1, 1, 3), 100, np.uint8)
     colour = np.array([200.0, 100.0, 0.0])
     fill_rectangle(image, 0.25, 0.0, 1.0, 1.0, colour, colour)

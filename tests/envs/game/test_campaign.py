@@ -5,11 +5,12 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
-from arkanoid.envs.levels.files import CAMPAIGN, load_round
-from arkanoid.envs.levels.generator import FIRST_TEST_SEED, TRAIN_SEEDS, generate_level
+from arkanoid.envs.levels import CAMPAIGN, load_level
+from arkanoid.envs.levels.generator import FIRST_TEST_SEED, TRAIN_SEEDS, lay_level
 from arkanoid.envs.levels.plan import TEST_SEEDS, seed_range
 from arkanoid.envs.rules import UNBREAKABLE
 from gymnasium.vector import AutoresetMode
+from helpers.states import writable_state
 
 NOOP = 0
 
@@ -17,7 +18,7 @@ NOOP = 0
 def make(**keywords):
     env = ArkanoidEnv(**({"frame_skip": 1} | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def clear_round(env, world):
@@ -37,7 +38,7 @@ def clear_round(env, world):
 
 def generated(seed, difficulty):
     kinds = np.zeros(198, np.uint8)
-    generate_level(kinds, seed, difficulty)
+    lay_level(kinds, seed, difficulty)
     return kinds.tobytes()
 
 
@@ -50,7 +51,7 @@ def test_the_campaign_is_the_named_rounds_the_boss_and_then_generated_ones_harde
     env, world = make()
     for number, name in enumerate(CAMPAIGN, 1):
         assert world.round_number == number
-        assert world.kind.tobytes() == load_round(name).kinds.tobytes()
+        assert world.kind.tobytes() == load_level(name).kinds.tobytes()
         assert (world.boss_hits == 16) == (name == "warden")
         clear_round(env, world)
     for index in range(14):
@@ -117,7 +118,7 @@ def test_a_list_is_played_in_turn_again_and_again(tmp_path):
     level.write_text("w..........\n")
     env, world = make(levels=["comb", str(level)])
     for number in range(6):
-        expected = load_round("comb" if number % 2 == 0 else str(level))
+        expected = load_level("comb" if number % 2 == 0 else str(level))
         assert world.kind.tobytes() == expected.kinds.tobytes()
         clear_round(env, world)
 
@@ -149,9 +150,9 @@ class TestResetOptions:
         env, world = make()
         info = env.reset(options={"level": "vault"})[1]
         assert info["round"] == 11
-        assert world.kind.tobytes() == load_round("vault").kinds.tobytes()
+        assert world.kind.tobytes() == load_level("vault").kinds.tobytes()
         clear_round(env, world)
-        assert world.kind.tobytes() == load_round("switchback").kinds.tobytes()
+        assert world.kind.tobytes() == load_level("switchback").kinds.tobytes()
 
     def test_the_boss_can_be_asked_for(self):
         env, world = make()
@@ -210,7 +211,7 @@ class TestResetOptions:
         mask = np.array([False, True, False])
         env.reset(options={"reset_mask": mask, "level": "comb"})
         for _ in range(5):  # through automatic resets
-            assert env._batch.worlds["round_number"].tolist() == [1, 6, 1]
+            assert env.state["round_number"].tolist() == [1, 6, 1]
             infos = env.step(np.zeros(3, int))[-1]
         assert infos["round"].tolist() == [1, 6, 1]
 
@@ -230,10 +231,10 @@ class TestResetOptions:
     def test_illegal_ones_are_refused_and_change_nothing(self, options, error, message):
         for env in (ArkanoidEnv(), ArkanoidVectorEnv(2)):
             env.reset(seed=0)
-            before = env._batch.worlds.tobytes()
+            before = env.state.tobytes()
             with pytest.raises(error, match=message):
                 env.reset(options=options)
-            assert env._batch.worlds.tobytes() == before
+            assert env.state.tobytes() == before
 
     def test_the_boss_is_refused_where_there_are_no_enemies(self):
         env, _ = make(enemies=False)

@@ -24,6 +24,7 @@ from arkanoid.envs.rules import (
     SLOW,
 )
 from arkanoid.envs.state import ABSENT, FLYING, HELD
+from helpers.states import writable_state
 from shapely import Point, Polygon, box
 
 NOOP, LEFT, RIGHT, FIRE = 0, 1, 2, 3
@@ -34,7 +35,7 @@ def make(**keywords):
     """Return an env of one tick a decision, freshly reset, and its world's record."""
     env = ArkanoidEnv(**({"frame_skip": 1, "levels": "ripple", "enemies": False} | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def fly(world, x, y, vx, vy, ball=0):

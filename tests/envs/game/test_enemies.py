@@ -23,6 +23,7 @@ from arkanoid.envs.rules import (
     PADDLE_Y,
 )
 from arkanoid.envs.state import ABSENT, CIRCLING, DIVING, DRIFTING, ENTERING, FLYING, HELD
+from helpers.states import writable_state
 from shapely import Point, Polygon, box, union_all
 
 NOOP, LEFT, RIGHT, FIRE = 0, 1, 2, 3
@@ -36,7 +37,7 @@ def make(**keywords):
     """Return an env of one tick a decision, freshly reset, and its world's record."""
     env = ArkanoidEnv(**({"frame_skip": 1, "levels": "ripple", "capsules": False} | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def clear_field(world):

@@ -2,8 +2,7 @@
 
 import hashlib
 import os
-import subprocess
-import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +18,9 @@ from arkanoid.envs.rules import (
     POWERS,
     UNBREAKABLE,
 )
+from helpers.processes import INTERPRETED, run_program
+from helpers.repository import TESTS
+from helpers.states import portable_bytes, writable_states
 
 LEVELS = ["campaign", "train", "test", "seeds:5-9", "warden", ["vault", "spiral", "warden"]]
 
@@ -50,7 +52,7 @@ def random_keywords(rng):
 
 def check(env, observations, rewards):
     """Assert what holds in every state of every game."""
-    worlds = env._batch.worlds
+    worlds = env.state
     low, high = env.single_observation_space.low[0], env.single_observation_space.high[0]
     assert np.isfinite(observations).all()
     assert (observations >= low).all()
@@ -126,10 +128,10 @@ def fuzz(seed, games, worlds, steps):
             assert all((infos[key] >= 0).all() for key in infos if not key.startswith(("_", "fin")))
             if rng.random() < 0.005:
                 # Something out of the ordinary: a capsule for everybody.
-                caught = env._batch.worlds["capsule"] == 0
+                caught = env.state["capsule"] == 0
                 if env.config.capsules:
-                    caught &= env._batch.worlds["ball_state"].any(axis=1)
-                    place_capsules(env._batch.worlds, caught, int(rng.integers(1, CAPSULES + 1)))
+                    caught &= env.state["ball_state"].any(axis=1)
+                    place_capsules(writable_states(env), caught, int(rng.integers(1, CAPSULES + 1)))
         ticks += worlds * steps * keywords["frame_skip"]
     return ticks
 
@@ -166,28 +168,18 @@ def play_hash(steps):
         actions = np.random.default_rng(1).integers(0, 6, (steps, 3))
         for step, row in enumerate(actions):
             if step % 40 == 20:
-                place_capsules(env._batch.worlds, np.ones(3, bool), 1 + step // 40 % CAPSULES)
+                place_capsules(writable_states(env), np.ones(3, bool), 1 + step // 40 % CAPSULES)
             observations, rewards, *_ = env.step(row)
             digest.update(observations.tobytes() + rewards.tobytes())
-        digest.update(env._batch.worlds.tobytes())
+        digest.update(portable_bytes(env.state))
     return digest.hexdigest()
 
 
 def test_interpreted_and_compiled_give_the_same_bits():
-    script = f"""
-import importlib.util
-spec = importlib.util.spec_from_file_location("fuzz", {__file__!r})
-module = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(module)
-print(module.play_hash(300))
-"""
-    result = subprocess.run(
-        [sys.executable, "-c", script],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    program = "import test_fuzz; print(test_fuzz.play_hash(300))"
+    paths = os.pathsep.join([str(TESTS), str(Path(__file__).parent)])
+    changes = INTERPRETED | {"PYTHONPATH": paths}
+    result = run_program(program, warnings="default", changes=changes)
     assert result.stdout.strip() == play_hash(300)
 
 
@@ -210,4 +202,4 @@ def test_the_same_bits_in_any_batch_and_from_any_snapshot():
         other = few.step(row[:5])
         assert one[0][:5].tobytes() == other[0].tobytes()
         assert one[1][:5].tobytes() == other[1].tobytes()
-    assert many._batch.worlds[:5].tobytes() == few._batch.worlds.tobytes()
+    assert many.state[:5].tobytes() == few.state.tobytes()

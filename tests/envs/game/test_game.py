@@ -3,8 +3,7 @@
 import hashlib
 import math
 import os
-import subprocess
-import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +18,9 @@ from arkanoid.envs.rules import (
     PADDLE_Y,
 )
 from arkanoid.envs.state import FLYING, HELD
+from helpers.processes import INTERPRETED, run_program
+from helpers.repository import TESTS
+from helpers.states import portable_bytes, writable_state
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Point, Polygon, box, union_all
@@ -33,7 +35,7 @@ def make(**keywords):
     """Return an env of one tick a decision, freshly reset, and its world's record."""
     env = ArkanoidEnv(**({"frame_skip": 1} | PLAIN | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def fly(world, x, y, vx, vy):
@@ -188,9 +190,9 @@ def test_scores_rewards_and_the_next_round():
     assert world.ball_state[0] == HELD
     # Ripple's bricks by the points of their colours.
     points = dict(zip("wocgrbmy", range(50, 121, 10), strict=False))
-    from arkanoid.envs.levels.files import load_round
+    from arkanoid.envs.levels import load_level
 
-    kinds = load_round("ripple").kinds
+    kinds = load_level("ripple").kinds
     assert info["score"] == sum(points["wocgrbmy"[kind - 1]] for kind in kinds[kinds > 0])
 
 
@@ -287,7 +289,7 @@ def test_an_endless_loop_is_broken():
 def test_the_ball_is_never_in_a_wall_a_brick_or_the_paddle(seed, speed, paddle):
     env, _ = make(speed=speed, paddle=paddle, lives=100)
     env.reset(seed=seed)
-    world = env._batch.worlds[0]
+    world = env.state
     actions = np.random.default_rng(seed)
     vertices = np.array(paddle_collider(2.0 * paddle).vertices)
     for step in range(400):
@@ -313,7 +315,7 @@ def test_a_ball_at_absurd_speed_never_leaves_the_field(speed):
     env = ArkanoidVectorEnv(16, speed=speed, lives=1000, frame_skip=1)
     env.reset(seed=0)
     env.action_space.seed(0)
-    worlds = env._batch.worlds
+    worlds = env.state
     for _ in range(300):
         env.step(env.action_space.sample())
         x, y = worlds["ball_x"][:, 0], worlds["ball_y"][:, 0]
@@ -345,25 +347,13 @@ def play_hash(steps):
     for row in actions:
         observations, rewards, *_ = env.step(row)
         digest.update(observations.tobytes() + rewards.tobytes())
-    digest.update(env._batch.worlds.tobytes())
+    digest.update(portable_bytes(env.state))
     return digest.hexdigest()
 
 
 def test_interpreted_and_compiled_give_the_same_bits():
-    code = "import tests_of_game as t; print(t.play_hash(300))"
-    script = f"""
-import importlib.util, sys
-spec = importlib.util.spec_from_file_location("tests_of_game", {__file__!r})
-module = importlib.util.module_from_spec(spec)
-sys.modules["tests_of_game"] = module
-spec.loader.exec_module(module)
-{code}
-"""
-    result = subprocess.run(
-        [sys.executable, "-c", script],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    program = "import test_game; print(test_game.play_hash(300))"
+    paths = os.pathsep.join([str(TESTS), str(Path(__file__).parent)])
+    changes = INTERPRETED | {"PYTHONPATH": paths}
+    result = run_program(program, warnings="default", changes=changes)
     assert result.stdout.strip() == play_hash(300)

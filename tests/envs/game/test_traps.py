@@ -8,6 +8,7 @@ from arkanoid.envs import ArkanoidEnv
 from arkanoid.envs.game.shapes import paddle_collider
 from arkanoid.envs.rules import BALL_RADIUS, BALL_SPEED, FIELD_WIDTH, PADDLE_TOP, PADDLE_Y
 from arkanoid.envs.state import FLYING, IDLE
+from helpers.states import writable_state
 from shapely import Point, Polygon
 
 NOOP, LEFT, RIGHT, FIRE = 0, 1, 2, 3
@@ -17,7 +18,7 @@ def make(**keywords):
     """Return an env of one tick a decision, freshly reset, and its world's record."""
     env = ArkanoidEnv(**({"frame_skip": 1, "levels": "ripple"} | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def fly(world, x, y, vx, vy):

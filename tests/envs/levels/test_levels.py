@@ -1,4 +1,4 @@
-"""Level files: what is read, and what is refused with its place; the named rounds."""
+"""Level files: what is read, and what is refused with its line; the named levels."""
 
 import re
 import runpy
@@ -7,15 +7,13 @@ from pathlib import Path
 import imageio.v3 as iio
 import numpy as np
 import pytest
-from arkanoid.envs.levels.clearability import mark_reachable, unreachable, unreachable_bricks
-from arkanoid.envs.levels.files import (
+from arkanoid.envs.levels import (
     CAMPAIGN,
-    Round,
-    campaign_rounds,
-    load_round,
-    named_rounds,
-    parse_round,
+    level_names,
+    load_level,
+    parse_level,
 )
+from arkanoid.envs.levels.clearability import search_reachable, unreachable_bricks
 from arkanoid.envs.rules import GOLD, LATTICE_TOP, SILVER
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -44,7 +42,7 @@ def metallic_levels(count: int) -> NDArray[np.uint8]:
 
 
 def test_a_level_is_read_row_by_row_from_the_top():
-    tiny = parse_round(GOOD, "tiny.txt")
+    tiny = parse_level(GOOD, "tiny.txt")
     assert (tiny.name, tiny.comment, tiny.boss) == ("Tiny", "two bricks", False)
     assert tiny.kinds.shape == (18, 11)
     assert np.argwhere(tiny.kinds).tolist() == [[0, 1], [0, 9]]
@@ -61,7 +59,7 @@ def test_a_level_is_read_row_by_row_from_the_top():
     ],
 )
 def test_headings_blank_lines_and_line_ends_are_free(text):
-    level = parse_round(text, "some/tiny.txt")
+    level = parse_level(text, "some/tiny.txt")
     assert np.argwhere(level.kinds).tolist() == [[0, 1], [0, 9]]
     assert level.name in ("tiny", "Tiny")
 
@@ -89,35 +87,35 @@ def test_headings_blank_lines_and_line_ends_are_free(text):
 )
 def test_malformed_levels_are_refused(text, message):
     with pytest.raises(ValueError, match=re.escape(message)):
-        parse_round(text, "a.txt")
+        parse_level(text, "a.txt")
 
 
-def test_a_gap_at_a_side_is_a_way_and_one_at_a_corner_is_none():
+def test_a_ball_passes_a_gap_at_a_side_but_not_at_a_corner():
     below = CAGE.rsplit("XXX", 1)
-    assert parse_round("X.X".join(below), "cage.txt").kinds[1, 3] == 1
+    assert parse_level("X.X".join(below), "cage.txt").kinds[1, 3] == 1
     with pytest.raises(ValueError, match="line 4 column 4"):
-        parse_round(".XX".join(below), "cage.txt")
+        parse_level(".XX".join(below), "cage.txt")
     # From above the bricks a ball comes to any column.
     above = "wX.........\noX.........\nX.........."
-    assert parse_round(above, "above.txt").kinds[:2, 0].tolist() == [1, 2]
+    assert parse_level(above, "above.txt").kinds[:2, 0].tolist() == [1, 2]
     with pytest.raises(ValueError, match="line 2 column 1"):
-        parse_round(above.replace("w", "X"), "above.txt")
+        parse_level(above.replace("w", "X"), "above.txt")
 
 
 def test_a_level_file_of_ones_own(tmp_path):
     file = tmp_path / "mine.txt"
     file.write_text(GOOD)
-    assert load_round(str(file)).name == "Tiny"
+    assert load_level(str(file)).name == "Tiny"
     file.write_text(CAGE)
     with pytest.raises(ValueError, match=re.escape(f"{file}: gold (X) keeps the ball")):
-        load_round(str(file))
+        load_level(str(file))
 
 
 def test_a_missing_level_names_those_there_are():
     with pytest.raises(ValueError, match=r"neither a file nor one of .*ripple"):
-        load_round("no-such-level")
+        load_level("no-such-level")
     with pytest.raises(ValueError, match="Did you mean 'nested_rings'"):
-        load_round("nested-rings")
+        load_level("nested-rings")
 
 
 def test_reach_agrees_with_labelled_regions():
@@ -126,28 +124,26 @@ def test_reach_agrees_with_labelled_regions():
     assert expected.any(axis=(1, 2)).mean() > 0.5
     assert not expected.any(axis=(1, 2)).all()
     before = levels.copy()
-    counts = [unreachable(level.ravel()) for level in levels]
-    assert counts == expected.sum(axis=(1, 2)).tolist()
+    for level, mask in zip(levels, expected, strict=True):
+        assert unreachable_bricks(level) == [tuple(cell) for cell in np.argwhere(mask)]
     assert (levels == before).all()
-    for level, mask in zip(levels[:500], expected[:500], strict=True):
-        assert unreachable_bricks(level) == [tuple(place) for place in np.argwhere(mask)]
 
 
 def test_a_search_goes_on_where_a_gap_is_opened():
-    """Marks of an earlier search stay valid: the generator opens gap after gap."""
+    """An earlier search stays valid: the generator opens gap after gap."""
     for level in metallic_levels(300).reshape(-1, 198):
         afresh, continued = level.copy(), level.copy()
-        mark_reachable(continued)
+        search_reachable(continued)
         opened = np.flatnonzero(level == GOLD)[:3]
         afresh[opened] = continued[opened] = 1
-        mark_reachable(afresh)
-        mark_reachable(continued)
+        search_reachable(afresh)
+        search_reachable(continued)
         assert (afresh == continued).all()
 
 
 def test_the_campaign():
-    rounds = campaign_rounds()
-    assert [item.name for item in rounds] == [
+    levels = [load_level(name) for name in CAMPAIGN]
+    assert [item.name for item in levels] == [
         "Ripple",
         "Archway",
         "Honeycomb",
@@ -162,17 +158,18 @@ def test_the_campaign():
         "Switchback",
         "Warden",
     ]
-    assert sorted(CAMPAIGN) == named_rounds()
-    assert [item.boss for item in rounds] == [False] * 12 + [True]
-    for number, item in enumerate(rounds, 1):
+    assert sorted(CAMPAIGN) == level_names()
+    assert [item.boss for item in levels] == [False] * 12 + [True]
+    for number, item in enumerate(levels, 1):
         assert (item.kinds == SILVER).any() == (number >= 4), item.name
         assert (item.kinds == GOLD).any() == (number >= 7), item.name
-    outlines = {(item.kinds > 0).tobytes() for item in rounds}
+    outlines = {(item.kinds > 0).tobytes() for item in levels}
     assert len(outlines) == 13
 
 
-@pytest.mark.parametrize("item", campaign_rounds(), ids=CAMPAIGN)
-def test_named_rounds_are_sound(item: Round):
+@pytest.mark.parametrize("name", CAMPAIGN)
+def test_named_levels_are_sound(name: str):
+    item = load_level(name)
     assert item.comment.endswith(".")
     assert len(item.comment) < 90
     assert not out_of_reach(item.kinds[np.newaxis]).any()
@@ -182,7 +179,7 @@ def test_named_rounds_are_sound(item: Round):
 
 
 def test_the_boss_has_room():
-    warden = campaign_rounds()[-1]
+    warden = load_level(CAMPAIGN[-1])
     for row, column in np.argwhere(warden.kinds):
         # The nearest point of the brick to the boss's place.
         x = np.clip(5.5, column, column + 1)
@@ -192,15 +189,15 @@ def test_the_boss_has_room():
 
 
 def test_a_boss_needs_no_bricks():
-    assert parse_round("boss: yes\n", "lone.txt").boss
+    assert parse_level("boss: yes\n", "lone.txt").boss
     with pytest.raises(ValueError, match="no breakable brick"):
-        parse_round("boss: no\n", "lone.txt")
+        parse_level("boss: no\n", "lone.txt")
 
 
-def test_the_documentation_shows_all_of_them(tmp_path):
+def test_the_documentation_shows_all_named_levels(tmp_path):
     script = runpy.run_path(str(ROOT / "docs" / "pictures" / "levels.py"))
     script["main"](tmp_path)
-    for name, pictures in ((script["ROUNDS"], 13), (script["GENERATED"], 5 * 6)):
+    for name, pictures in ((script["NAMED"], 13), (script["GENERATED"], 5 * 6)):
         drawn = iio.imread(tmp_path / name)
         assert drawn.shape == iio.imread(ROOT / "docs" / "pictures" / name).shape
         height, width = 206, 192
@@ -208,11 +205,11 @@ def test_the_documentation_shows_all_of_them(tmp_path):
         tiles = tiles.swapaxes(1, 2).reshape(-1, height * width * 3)
         assert len(np.unique(tiles[tiles.any(axis=1)], axis=0)) == pictures
     text = (ROOT / "docs" / "levels.md").read_text("utf-8")
-    for name, item in zip(CAMPAIGN, campaign_rounds(), strict=True):
-        assert f"| {item.name} | `{name}` |" in text
+    for name in CAMPAIGN:
+        assert f"| {load_level(name).name} | `{name}` |" in text
 
 
 def test_the_documentations_level_can_be_played():
     text = (ROOT / "docs" / "levels.md").read_text("utf-8")
     example = text.split("```text\n")[1].split("```")[0]
-    assert parse_round(example, "gate.txt").name == "Gate"
+    assert parse_level(example, "gate.txt").name == "Gate"

@@ -1,9 +1,6 @@
 """The observations `grid` and `rgb`: what they show is what the state says, and nothing else."""
 
 import hashlib
-import os
-import subprocess
-import sys
 
 import gymnasium as gym
 import numpy as np
@@ -15,6 +12,8 @@ from arkanoid.envs.observe.planes import GRID_ROWS, MAX_MARKS, STATUS
 from arkanoid.envs.rules import BALL_SPEED, BOSS_HITS, UNBREAKABLE
 from arkanoid.envs.state import FLYING
 from gymnasium.utils.env_checker import check_env
+from helpers.processes import COMPILED, INTERPRETED, run_program
+from helpers.states import latest_observations, observe_anew, writable_state, writable_states
 
 EVERYTHING = {"capsule_rate": 1.0, "lives": 2, "speed": 2.0, "max_decisions": 200}
 KINDS = [
@@ -33,15 +32,12 @@ def make(**keywords):
     """Return an environment, and its world, whose state a test may change."""
     env = ArkanoidEnv(**({"frame_skip": 1, "levels": "vault"} | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def show(env):
     """Return the observation of the world as it is, without playing."""
-    batch = env._batch
-    batch.worlds["lattice_changed"] = 1
-    batch.observer.part(batch.worlds, batch.rules, slice(0, 1))(np.ones(1, bool))
-    return batch.observations[0]
+    return observe_anew(env)[0]
 
 
 def planes(env):
@@ -220,12 +216,8 @@ def test_nothing_stays_in_a_grid_that_is_gone_in_the_game():
         observations = env.step(env.action_space.sample())[0]
         assert env.observation_space.contains(observations)
         if step % 10 == 0:
-            fresh._batch.observations[:] = 0.0
-            fresh._batch.observer._marks[:] = 0
-            fresh._batch.worlds[:] = env._batch.worlds
-            fresh._batch.worlds["lattice_changed"] = 1
-            fresh._batch._whole.observe(np.ones(16, bool))
-            assert observations.tobytes() == fresh._batch.observations.tobytes()
+            writable_states(fresh)[:] = env.state
+            assert observations.tobytes() == observe_anew(fresh, 0.0).tobytes()
 
 
 def test_the_fullest_grid_can_be_erased():
@@ -306,7 +298,7 @@ def test_a_stack_forgets_the_episode_before(mode):
     begun = 0
     for _ in range(100):
         shown, _, _, truncated, infos = env.step(env.action_space.sample())
-        for world in np.flatnonzero(env._batch.worlds["decisions"] == 0):
+        for world in np.flatnonzero(env.state["decisions"] == 0):
             begun += 1
             assert (shown[world] == shown[world, -1]).all()
             if mode == "SameStep":
@@ -351,14 +343,14 @@ def test_a_restored_state_goes_on_bit_for_bit(kind):
         for _ in range(3):
             env.step(env.action_space.sample())
         shown, _ = other.restore(env.snapshot())
-        assert shown.tobytes() == env._batch.observations[0].tobytes()
+        assert shown.tobytes() == latest_observations(env)[0].tobytes()
         branch = env.clone()
         for _ in range(7):
             action = env.action_space.sample()
             expected = env.step(action)[0].tobytes()
             assert other.step(action)[0].tobytes() == expected
             assert branch.step(action)[0].tobytes() == expected
-            if env._batch.worlds["done"][0]:
+            if env.state["done"]:
                 assert other.reset(seed=5)[0].tobytes() == env.reset(seed=5)[0].tobytes()
                 branch.reset(seed=5)
 
@@ -399,14 +391,8 @@ print(digest.hexdigest())
 
 def test_compiled_and_interpreted_give_the_same_bits():
     digests = {
-        subprocess.run(
-            [sys.executable, "-c", PROGRAM],
-            env=os.environ | {"NUMBA_DISABLE_JIT": disabled},
-            stdout=subprocess.PIPE,
-            text=True,
-            check=True,
-        ).stdout
-        for disabled in ("0", "1")
+        run_program(PROGRAM, warnings="default", changes=changes).stdout
+        for changes in (COMPILED, INTERPRETED)
     }
     assert len(digests) == 1
 

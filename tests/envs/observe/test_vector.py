@@ -6,6 +6,7 @@ import pytest
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
 from arkanoid.envs.rules import BALL_SPEED, UNBREAKABLE
 from arkanoid.envs.state import CIRCLING, FLYING
+from helpers.states import observe_anew, writable_state, writable_states
 
 NOOP, RIGHT, FIRE = 0, 2, 3
 
@@ -13,13 +14,12 @@ NOOP, RIGHT, FIRE = 0, 2, 3
 def make(**keywords):
     env = ArkanoidEnv(**({"frame_skip": 1, "levels": "vault"} | keywords))
     env.reset(seed=0)
-    return env, env._batch.worlds[0]
+    return env, writable_state(env)
 
 
 def show(env):
     """Return the observation of the world as it is, without playing."""
-    show_world(env, 0)
-    row = env._batch.observations[0]
+    (row,) = observe_anew(env, 7.0)
     return {name: row[where].tolist() for name, where in env.layout.items()}
 
 
@@ -144,18 +144,5 @@ def test_what_is_written_only_when_it_changes_is_never_stale():
             env.reset(options={"level": None})
         observations = env.step(env.action_space.sample())[0]
         if step % 10 == 0:
-            other._batch.observations[:] = 7.0
-            other._batch.worlds[:] = env._batch.worlds
-            for index in range(16):
-                show_world(other, index)
-            assert observations.tobytes() == other._batch.observations.tobytes()
-
-
-def show_world(env, index):
-    """Write a world's observation anew, as if nothing of it were there."""
-    from arkanoid.envs.observe.vector import observe
-
-    batch = env._batch
-    for flag in ("lattice_changed", "capsules_shown", "enemies_shown"):
-        batch.worlds[flag][index] = 1
-    observe(batch.worlds[index], batch.rules[0], batch.observations[index])
+            writable_states(other)[:] = env.state
+            assert observations.tobytes() == observe_anew(other, 7.0).tobytes()

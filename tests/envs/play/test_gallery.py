@@ -1,8 +1,7 @@
-"""Levels to look at: the list, the text, the colours, the pictures, and the command."""
+"""Levels to look at: list, text, colours, pictures, and the command `arkanoid levels`."""
 
 import io
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,22 +10,22 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 from arkanoid.agents import cli
-from arkanoid.envs.draw.palette import BRICK, PALETTE
-from arkanoid.envs.draw.png import png_bytes
-from arkanoid.envs.levels.files import CAMPAIGN, generate_round, parse_round
+from arkanoid.envs.draw.palette import BRICK_BODY, PALETTE
+from arkanoid.envs.levels import CAMPAIGN, generate_level, parse_level
 from arkanoid.envs.play.gallery import (
-    COLOURS,
-    LETTERS,
+    COLOURS_256,
+    NO_COLOURS,
     PICTURE_COLUMNS,
     TRUE_COLOURS,
-    chosen_seed,
     count_bricks,
     draw_levels,
-    find_level,
     level_in_colours,
     level_text,
+    load_or_generate,
+    parse_seed,
     terminal_colours,
 )
+from helpers.processes import run_program
 
 SGR = re.compile(r"\x1b\[[\d;]*m")
 CUBE = np.array([0, 95, 135, 175, 215, 255])
@@ -37,17 +36,10 @@ class Terminal(io.StringIO):
         return True
 
 
-@pytest.mark.parametrize("shape", [(1, 1, 3), (7, 5, 3), (64, 33, 1), (48, 36, 3)])
-def test_a_png_is_read_back_as_it_was(shape: tuple[int, int, int]) -> None:
-    picture = np.random.default_rng(1).integers(0, 256, shape).astype(np.uint8)
-    read = iio.imread(png_bytes(picture), extension=".png")
-    np.testing.assert_array_equal(read.reshape(shape), picture)
-
-
 @pytest.mark.parametrize("name", CAMPAIGN)
 def test_a_levels_text_is_its_file(name: str) -> None:
-    level = find_level(name)
-    again = parse_round(level_text(level), "again.txt")
+    level = load_or_generate(name)
+    again = parse_level(level_text(level), "again.txt")
     assert (again.name, again.comment, again.boss) == (level.name, level.comment, level.boss)
     np.testing.assert_array_equal(again.kinds, level.kinds)
 
@@ -55,25 +47,25 @@ def test_a_levels_text_is_its_file(name: str) -> None:
 @pytest.mark.parametrize("difficulty", [0.0, 0.5, 1.0])
 def test_a_generated_level_can_be_kept_as_a_file(difficulty: float) -> None:
     for seed in range(30):
-        level = find_level(f"seed:{seed}", difficulty)
-        expected = generate_round(seed, difficulty=difficulty)
+        level = load_or_generate(f"seed:{seed}", difficulty)
+        expected = generate_level(seed, difficulty=difficulty)
         assert level.name == expected.name
-        again = parse_round(level_text(level), "again.txt")
+        again = parse_level(level_text(level), "again.txt")
         np.testing.assert_array_equal(again.kinds, expected.kinds)
 
 
 @pytest.mark.parametrize("name", [*CAMPAIGN, "seed:3"])
 def test_bricks_are_counted(name: str) -> None:
-    level = find_level(name, 0.9)
+    level = load_or_generate(name, 0.9)
     rows = "".join(level_text(level).split("\n\n")[1])
     letters = sum(rows.count(letter) for letter in "wocgrbmyS")
     assert count_bricks(level) == (letters, rows.count("S"), rows.count("X"))
 
 
-@pytest.mark.parametrize("colours", [COLOURS, TRUE_COLOURS])
+@pytest.mark.parametrize("colours", [COLOURS_256, TRUE_COLOURS])
 @pytest.mark.parametrize("name", ["vault", "warden"])
-def test_in_colours_each_brick_has_its_own(name: str, colours: int) -> None:
-    level = find_level(name)
+def test_each_kind_of_brick_has_its_own_colour(name: str, colours: int) -> None:
+    level = load_or_generate(name)
     _, comment, *rows = level_in_colours(level, colours).split("\n")
     assert comment == level.comment
     assert len(rows) == 18
@@ -95,35 +87,35 @@ def test_in_colours_each_brick_has_its_own(name: str, colours: int) -> None:
     assert len({ink for _, ink in inks}) == len({kind for kind, _ in inks})
     if colours == TRUE_COLOURS:
         for kind, ink in inks:
-            red, green, blue = PALETTE[BRICK + kind].astype(int)
+            red, green, blue = PALETTE[BRICK_BODY + kind].astype(int)
             assert ink == f"38;2;{red};{green};{blue}"
 
 
 def test_of_256_colours_the_nearest_is_taken() -> None:
     for kind in range(1, 11):
-        level = parse_round("." * 5 + ".wocgrbmySX"[kind] + "....w", "one.txt")
-        row = level_in_colours(level, COLOURS).split("\n")[2]
+        level = parse_level("." * 5 + ".wocgrbmySX"[kind] + "....w", "one.txt")
+        row = level_in_colours(level, COLOURS_256).split("\n")[2]
         code = int(re.findall(r"38;5;(\d+);48;5;\d+m▀", row)[0])
-        wanted = [int(np.argmin(abs(CUBE - part))) for part in PALETTE[BRICK + kind]]
+        wanted = [int(np.argmin(abs(CUBE - part))) for part in PALETTE[BRICK_BODY + kind]]
         assert code - 16 == 36 * wanted[0] + 6 * wanted[1] + wanted[2]
 
 
-def test_colours_only_where_they_are_wanted_and_seen() -> None:
-    assert terminal_colours(io.StringIO(), {"COLORTERM": "truecolor"}) == LETTERS
-    assert terminal_colours(Terminal(), {"COLORTERM": "truecolor", "NO_COLOR": "1"}) == LETTERS
-    assert terminal_colours(Terminal(), {"TERM": "dumb"}) == LETTERS
+def test_colours_are_used_only_where_they_are_wanted_and_shown() -> None:
+    assert terminal_colours(io.StringIO(), {"COLORTERM": "truecolor"}) == NO_COLOURS
+    assert terminal_colours(Terminal(), {"COLORTERM": "truecolor", "NO_COLOR": "1"}) == NO_COLOURS
+    assert terminal_colours(Terminal(), {"TERM": "dumb"}) == NO_COLOURS
     # An empty NO_COLOR says nothing: https://no-color.org
     assert terminal_colours(Terminal(), {"COLORTERM": "24bit", "NO_COLOR": ""}) == TRUE_COLOURS
-    assert terminal_colours(Terminal(), {"TERM": "xterm-256color"}) == COLOURS
+    assert terminal_colours(Terminal(), {"TERM": "xterm-256color"}) == COLOURS_256
 
 
-def test_seeds_are_told_from_names() -> None:
-    assert chosen_seed("spiral") is None
-    assert chosen_seed("seed:0") == 0
-    assert chosen_seed(f"seed:{2**63 - 1}") == 2**63 - 1
+def test_seeds_are_distinguished_from_names() -> None:
+    assert parse_seed("spiral") is None
+    assert parse_seed("seed:0") == 0
+    assert parse_seed(f"seed:{2**63 - 1}") == 2**63 - 1
     for wrong in ("seed:", "seed:-1", "seed:x", "seed: 7", f"seed:{2**63}", "seed:1" + 99 * "0"):
         with pytest.raises(ValueError, match="as in seed:7"):
-            chosen_seed(wrong)
+            parse_seed(wrong)
 
 
 def test_pictures_show_what_the_environment_shows(tmp_path: Path) -> None:
@@ -147,7 +139,7 @@ def test_pictures_show_what_the_environment_shows(tmp_path: Path) -> None:
     assert draw_levels(["comb"], height=64).shape == (64, 48, 3)
 
 
-def test_the_command_lists_the_named_rounds(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_lists_the_named_levels(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["levels"]) == 0
     printed = capsys.readouterr().out
     assert [line.split()[0] for line in printed.split("\n")[1:14]] == list(CAMPAIGN)
@@ -160,12 +152,16 @@ def test_redirected_the_command_writes_a_level_file(
     assert cli.main(["levels", "seed:5", "--difficulty", "1"]) == 0
     file = tmp_path / "mine.txt"
     file.write_text(capsys.readouterr().out)
-    expected = generate_round(5, difficulty=1.0)
-    np.testing.assert_array_equal(find_level(str(file)).kinds, expected.kinds)
+    expected = generate_level(5, difficulty=1.0)
+    np.testing.assert_array_equal(load_or_generate(str(file)).kinds, expected.kinds)
     assert cli.main(["levels", "comb", "warden"]) == 0
     printed = capsys.readouterr().out
     assert (
-        printed == level_text(find_level("comb")) + "\n\n" + level_text(find_level("warden")) + "\n"
+        printed
+        == level_text(load_or_generate("comb"))
+        + "\n\n"
+        + level_text(load_or_generate("warden"))
+        + "\n"
     )
 
 
@@ -176,7 +172,7 @@ def test_in_a_terminal_the_command_draws(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.setenv("COLORTERM", "truecolor")
     assert cli.main(["levels", "comb"]) == 0
-    assert terminal.getvalue() == level_in_colours(find_level("comb"), TRUE_COLOURS) + "\n"
+    assert terminal.getvalue() == level_in_colours(load_or_generate("comb"), TRUE_COLOURS) + "\n"
 
 
 def test_the_command_draws_into_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -196,7 +192,7 @@ def test_the_command_draws_into_files(capsys: pytest.CaptureFixture[str], tmp_pa
         (["."], "no level '.'"),
     ],
 )
-def test_the_commands_mistakes(
+def test_mistakes_are_one_line_each(
     arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["levels", *arguments]) == 2
@@ -206,7 +202,7 @@ def test_the_commands_mistakes(
     assert words in message
 
 
-def test_a_wrong_file_is_named_with_its_line(
+def test_a_mistake_in_a_file_is_named_with_its_line(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     file = tmp_path / "mine.txt"
@@ -226,6 +222,5 @@ def test_no_extra_is_needed() -> None:
         "from arkanoid.agents.cli import main\n"
         "sys.exit(main(['levels', 'comb']))"
     )
-    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert run.returncode == 0, run.stderr
-    assert run.stdout == level_text(find_level("comb")) + "\n"
+    printed = run_program(program, warnings="default").stdout
+    assert printed == level_text(load_or_generate("comb")) + "\n"

@@ -1,26 +1,15 @@
 """The window, on SDL's dummy display."""
 
-import subprocess
 import sys
 import time
-from collections.abc import Iterator
 
 import gymnasium as gym
 import numpy as np
 import pytest
 from arkanoid.envs.play.window import Window
 from gymnasium.error import DependencyNotInstalled
-
-FAST = 10_000.0
-
-
-@pytest.fixture(autouse=True)
-def dummy_display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    import pygame
-
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    yield
-    pygame.display.quit()
+from helpers.processes import run_program
+from helpers.sittings import FAST
 
 
 def frame(height: int = 60, width: int = 40) -> np.ndarray:
@@ -60,7 +49,7 @@ def test_resized_it_keeps_the_proportions(size: tuple[int, int]) -> None:
     height, width = np.ptp(rows) + 1, np.ptp(columns) + 1
     factor = min(size[0] / 40, size[1] / 60)
     assert (height, width) == (max(1, round(60 * factor)), max(1, round(40 * factor)))
-    # In the middle.
+    # It is centred.
     assert abs(rows.min() - (size[1] - 1 - rows.max())) <= 1
     assert abs(columns.min() - (size[0] - 1 - columns.max())) <= 1
     window.close()
@@ -82,7 +71,7 @@ def test_closing_the_window_ends_the_show_and_not_the_program(kind: str) -> None
     pygame.event.post(pygame.event.Event(getattr(pygame, kind), window=window._window))
     assert not window.show(frame())
     assert window.closed
-    # The program, which may not look, goes on without a window, and without waiting for one.
+    # A program that does not check goes on without a window, and does not wait.
     slow = Window("test", 1e-3)
     slow.close()
     for _ in range(3):
@@ -90,7 +79,7 @@ def test_closing_the_window_ends_the_show_and_not_the_program(kind: str) -> None
     slow.close()
 
 
-def test_two_windows_do_not_take_each_others_events() -> None:
+def test_a_window_does_not_take_the_events_of_another_one() -> None:
     import pygame
 
     one, other = Window("one", FAST), Window("other", FAST)
@@ -115,7 +104,7 @@ def test_the_event_queue_does_not_run_full() -> None:
 
 
 def test_it_keeps_the_speed() -> None:
-    """Pictures come no faster than asked for, on the average exactly so fast."""
+    """Pictures come no faster than asked for."""
     window = Window("test", 50.0)
     window.show(frame())
     start = time.perf_counter()
@@ -132,7 +121,7 @@ def test_after_a_pause_it_does_not_rush() -> None:
     start = time.perf_counter()
     for _ in range(6):
         window.show(frame())
-    # The first one after the pause is due at once, the five that follow are not.
+    # The first picture after the pause is due at once, the other five are not.
     assert time.perf_counter() - start >= 5 / 50.0 - 0.02
     window.close()
 
@@ -149,7 +138,7 @@ def test_without_pygame_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch)
         Window("test", 60)
 
 
-def test_the_older_pygame_is_told_from_pygame_ce(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_older_pygame_is_distinguished_from_pygame_ce(monkeypatch: pytest.MonkeyPatch) -> None:
     import pygame
 
     monkeypatch.delattr(pygame, "Window")
@@ -162,10 +151,8 @@ def test_pygame_is_imported_late_quietly_and_without_warnings() -> None:
         "import sys, arkanoid.envs.play.window as module; assert 'pygame' not in sys.modules;"
         "module.Window('test', 60); assert 'pygame' in sys.modules"
     )
-    run = subprocess.run(
-        [sys.executable, "-W", "error", "-c", script], capture_output=True, text=True, check=False
-    )
-    assert (run.returncode, run.stdout, run.stderr) == (0, "", "")
+    done = run_program(script)
+    assert (done.stdout, done.stderr) == ("", "")
 
 
 def test_the_environment_plays_on_when_its_window_is_closed() -> None:
@@ -186,7 +173,7 @@ def test_the_environment_plays_on_when_its_window_is_closed() -> None:
 def test_a_window_of_the_environment_shows_sixty_ticks_a_second(
     frame_skip: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also where the frames a second are no whole number, as `render_fps` has to be."""
+    """Also where the frames per second are no whole number, as `render_fps` must be."""
     due: list[float] = []
     monkeypatch.setattr(Window, "_wait", lambda window: due.append(window._period))
     env = gym.make("arkanoid:Arkanoid-v0", render_mode="human", frame_skip=frame_skip)
@@ -196,7 +183,7 @@ def test_a_window_of_the_environment_shows_sixty_ticks_a_second(
     assert due == [pytest.approx(frame_skip / 60.0)] * 2
 
 
-def test_a_window_of_the_environment_fits_the_screen_with_whole_pixels_a_brick() -> None:
+def test_a_window_of_the_environment_fits_the_screen_with_whole_pixels_per_brick() -> None:
     import pygame
 
     env = gym.make("arkanoid:Arkanoid-v0", render_mode="human", frame_skip=1)

@@ -1,9 +1,9 @@
 """Contacts against an oracle that shares nothing with the engine: GEOS, through Shapely.
 
-Two convex regions overlap just if the difference of their places lies in their Minkowski
+Two convex regions overlap exactly if the difference of their positions is in their Minkowski
 difference, and the shortest separating translation goes to its boundary. The oracle builds that
-polygon as a convex hull of vertex differences, and lets GEOS measure. Open regions are cut off far
-away, discs are points about which the polygon is rounded.
+polygon as the convex hull of vertex differences, and GEOS measures distances. Open regions are cut
+off far away; discs are points about which the polygon is rounded.
 """
 
 from collections.abc import Callable
@@ -30,8 +30,9 @@ from scipy.optimize import linprog
 
 Array = npt.NDArray[Any]
 
-FAR = (1e3, 2e3)  # where the oracle cuts off open regions: twice, to know a depth that is the cut's
-DISAGREEMENT = 1e-9  # depths in which the engine and the oracle may disagree on overlap
+# Where the oracle cuts off open regions: at two distances, to recognise a depth due to the cut.
+FAR = (1e3, 2e3)
+DISAGREEMENT = 1e-9  # depths at which the engine and the oracle may disagree on overlap
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,7 @@ def random_convex(rng: np.random.Generator, scale: float) -> Region:
 
 
 def random_open_convex(rng: np.random.Generator, scale: float) -> Region:
-    """Some edges missing; now and then what is left meets again, or is a strip."""
+    """Return a polygon without some edges; sometimes the others meet again, or form a strip."""
     count = int(rng.integers(3, 8))
     points = ellipse_polygon(rng, count)
     if rng.random() < 0.2:
@@ -197,7 +198,7 @@ def contacts(shapes: Array, edges: Array, a: Array, b: Array, offset: Array) -> 
 
 
 def check(pairs: Pairs) -> None:
-    """Everything that a contact claims."""
+    """Check everything that a contact claims."""
     found = pairs.contacts[:, 0] == 1.0
     normal = pairs.contacts[:, 1:3]
     depth = pairs.contacts[:, 3]
@@ -205,25 +206,25 @@ def check(pairs: Pairs) -> None:
     expected = pairs.penetration(pairs.offset)
     assert not np.isnan(pairs.contacts).any()
 
-    # Who overlaps, and how deep: no shorter translation separates than the distance out.
+    # Which pairs overlap, and how deep: no translation shorter than the distance out separates.
     size = pairs.scale
     assert np.all((found == (expected > 0)) | (abs(expected) < DISAGREEMENT * size))
-    # A depth that grows with the distance of the cut is the cut's: the true one is larger.
+    # A depth that grows with the distance of the cut is due to it: the true one is larger.
     is_cut = pairs.penetration(pairs.offset, cut=1) > expected + 1e-9 * size
     assert np.all(depth[found & is_cut] > expected[found & is_cut])
     near = found & ~is_cut
     assert near.sum() > len(found) / 10
-    # The oracle's own rounding is that of its coordinates.
+    # The oracle itself rounds in proportion to its coordinates.
     error = size * (1e-11 if any(region.is_open for region in pairs.regions) else 1e-12)
     np.testing.assert_allclose(depth[near], expected[near], rtol=0, atol=error)
     np.testing.assert_allclose(np.linalg.norm(normal[found], axis=1), 1, rtol=0, atol=1e-15)
 
-    # The translation does separate, to a touch.
+    # The translation separates, and the regions just touch.
     step = normal * np.where(near, depth, 0.0)[:, None]
     left = pairs.penetration(pairs.offset + step)[near]
     assert abs(left).max() <= error
 
-    # The point is halfway between the surfaces that part.
+    # The point is halfway between the surfaces that separate.
     hulls = np.array([shapely.MultiPoint(region.cores[0]).convex_hull for region in pairs.regions])
     for which, surface in ((pairs.a, point + step / 2), (pairs.b, point - step / 2 - pairs.offset)):
         gap = shapely.distance(shapely.boundary(hulls[which]), shapely.points(surface))
@@ -268,7 +269,7 @@ def room(region: Region, other: Region, offset: Array) -> float:
 
 
 def test_open_pairs_agree_with_linear_programming() -> None:
-    """Without cutting anything off: two regions overlap if some disc lies in both."""
+    """Nothing is cut off here: two regions overlap if some disc is in both."""
     pairs = Pairs(21, 1_000, (*OPEN, random_rectangle), pool=5)
     rooms = np.array(
         [
@@ -279,7 +280,7 @@ def test_open_pairs_agree_with_linear_programming() -> None:
     found = pairs.contacts[:, 0] == 1.0
     assert 0.1 < found.mean() < 0.95
     assert np.all((found == (rooms > 0)) | (abs(rooms) < DISAGREEMENT))
-    # What no finite translation separates overlaps wherever it is.
+    # Regions that no finite translation separates overlap at any position.
     hopeless = np.isinf(pairs.contacts[:, 3])
     assert hopeless.any()
     for index in np.flatnonzero(hopeless)[:100]:

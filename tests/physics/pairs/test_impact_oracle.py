@@ -1,9 +1,9 @@
 """Times of impact against an oracle in 40 digits, which tries every feature against every other.
 
-Two regions that are apart first touch with a vertex on an edge or, rounded, with a vertex of one at
-the radii's distance from a vertex of the other. The oracle computes all of those times, from the
-numbers that the colliders were made of, and takes the least. It knows no separating axis, no
-farthest face, and none of the engine's edges.
+Two separate regions first touch with a vertex on an edge or, if rounded, with two vertices at a
+distance of the radii. The oracle computes all of these times, from the numbers that the colliders
+were made of, and takes the least. It uses no separating axis, no farthest face, and none of the
+engine's edges.
 """
 
 import math
@@ -39,8 +39,8 @@ class Exact:
     collider: Collider
     corners: tuple[Point, ...]
     segments: tuple[tuple[Point, Point, Point], ...] = ()  # start, end, outward unit normal
-    size: float = 0.0  # the farthest coordinate of what the collider was made of
-    slope: float = 1.0  # that, in lengths of the shortest edge, where edges are made of corners
+    size: float = 0.0  # the largest coordinate from which the collider was made
+    slope: float = 1.0  # the same in lengths of the shortest edge, if edges are made from corners
 
     @property
     def radius(self) -> mpf:
@@ -49,7 +49,7 @@ class Exact:
 
 @dataclass(frozen=True)
 class Touch:
-    """When two regions meet, the normal from a to b, and whether it is two corners that do."""
+    """When two regions meet, the normal from a to b, and whether two corners meet."""
 
     time: mpf
     normal: Point
@@ -90,7 +90,7 @@ def exact_region(
 
 
 def turned(points: np.ndarray, rotation: float) -> list[Point]:
-    """Return points turned by an angle; what is within rounding of a quarter turn is one."""
+    """Return points turned by an angle; within rounding of a quarter turn it counts as one."""
     quarters = round(rotation / (math.pi / 2))
     is_quarter = abs(rotation - quarters * math.pi / 2) < 1e-12
     angle = quarters * mp.pi / 2 if is_quarter else mpf(rotation)
@@ -156,7 +156,7 @@ def random_exact(rng: np.random.Generator, kind: int, scale: float) -> Exact:
 
 
 def first_touch(a: Exact, b: Exact, d: Point, v: Point) -> Touch | None:
-    """Return the first touch of any feature of a with any of b, which is at d and flies with v."""
+    """Return the first touch of any feature of a with any of b, which is at d and moves with v."""
     reach = a.radius + b.radius
     touches: list[Touch] = []
     if reach > 0:
@@ -201,22 +201,22 @@ def vertex_on_edge(
 def rounding(a: Exact, b: Exact, flight: float) -> float:
     """Return by how much doubles may misplace a vertex of one region beside an edge of the other.
 
-    Both are made of coordinates no larger than the regions' sizes and the places that the flight
-    leads through. Turning the corners costs at most 6 roundings of a coordinate, finding the
-    normals 4 (as many times more as edges are shorter than the coordinates of their ends), the sums
-    of two products for vertex, edge and place 3 each, and adding those up 2: with 16 of the sum of
-    all sizes nothing is forgotten (Higham, Accuracy and Stability of Numerical Algorithms, 3.1).
+    Both are made from coordinates no larger than the regions' sizes and the positions on the path.
+    Turning the corners costs at most 6 roundings of a coordinate, finding the normals 4 (multiplied
+    by the ratio of coordinates to edge length), the sums of two products for vertex, edge and
+    position 3 each, and adding these 2: 16 roundings of the sum of all sizes cover everything
+    (Higham, Accuracy and Stability of Numerical Algorithms, 3.1).
     """
     return 16 * UNIT_ROUNDOFF * max(a.slope, b.slope) * (a.size + b.size + flight)
 
 
 def check(seed: int, count: int, scale: float = 1.0) -> None:
-    """Compare random flights of all pairs of kinds, relatively to 1e-12.
+    """Compare random motions of all pairs of kinds, to a relative error of 1e-12.
 
-    Nothing can be better than the coordinates' own rounding. It moves the time by as much as the
-    closing speed takes to fly it: that is more than 1e-12 only of very short flights. The normal
-    at a corner turns by the angle under which it is seen from the disc's centre, as many times as
-    the flight is more nearly grazing: that is more than 1e-12 only of small discs which graze.
+    The rounding of the coordinates is unavoidable. It changes the time by the rounding divided by
+    the closing speed: more than 1e-12 only for very short times. It turns the normal at a corner by
+    the rounding divided by the radius, and more for grazing hits: more than 1e-12 only for small
+    discs that graze.
     """
     rng = np.random.default_rng(seed)
     pool = [random_exact(rng, kind, scale) for kind in range(7) for _ in range(6)]
@@ -272,7 +272,7 @@ def test_times_of_impact_to_twelve_digits_at_length(seed: int) -> None:
 
 @pytest.mark.parametrize("excess", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
 def test_grazing_discs_touch_where_they_say(excess: float) -> None:
-    """Nearly tangent, the time is ill-conditioned, but not the distance at that time."""
+    """For a grazing hit the time is ill-conditioned, but the distance at that time is not."""
     rng = np.random.default_rng(5)
     hits = 0
     for _ in range(200):
@@ -303,12 +303,12 @@ def test_grazing_discs_touch_where_they_say(excess: float) -> None:
 
 
 def test_a_disc_hit_from_a_billion_radii_away() -> None:
-    """Neither whether it hits nor the normal suffers from the distance of the start."""
+    """A distant start spoils neither the decision whether it hits nor the normal."""
     rng = np.random.default_rng(6)
     shapes, edges = shape_table((Particle(0.5), Particle(0.5)))
     for _ in range(500):
         d = rng.normal(0, 1e9, 2)
-        # Flying to within a radius or so of the other's centre, from whole numbers to be exact.
+        # It moves to within about a radius of the other's centre; whole numbers keep it exact.
         d = np.round(d)
         v = -d + rng.normal(0, 0.7, 2).round(3)
         time, nx, ny = impact_between(shapes, edges, 0, 1, *d, *v, math.inf)
@@ -321,12 +321,12 @@ def test_a_disc_hit_from_a_billion_radii_away() -> None:
             assert abs(ny - touch.normal[1]) <= 1e-12
 
 
-def test_a_disc_that_flies_almost_along_a_face_does_not_slip_in_behind_its_corner() -> None:
+def test_a_disc_moving_almost_along_a_face_does_not_slip_in_behind_its_corner() -> None:
     """Rounding once made it miss both the face and the face's corner.
 
-    It meets the face's line just before the corner, and passes the corner at its radius to the last
-    digit, so that it then sank into the wall. The number that decides against the face also says
-    that such a disc cannot miss.
+    It meets the face's line just before the corner, and passes the corner at a distance of its
+    radius, to the last digit: it then sank into the wall. The number that excludes the face also
+    says that such a disc cannot miss.
     """
     rng = np.random.default_rng(7)
     for _ in range(3_000):
@@ -335,7 +335,7 @@ def test_a_disc_that_flies_almost_along_a_face_does_not_slip_in_behind_its_corne
         along = np.array([np.cos(rotation), np.sin(rotation)])
         up = np.array([-along[1], along[0]])
         shapes, edges = shape_table((Particle(radius), Rectangle(200.0, 2.0, rotation)))
-        # It would be a hair inside the upper face in the middle, coming from beyond the left end.
+        # It comes from beyond the left end, and would be just inside the upper face in the middle.
         sink = 10 ** rng.uniform(-17, -10)
         start = -(100 + 10 ** rng.uniform(-6, 0)) * along + (1 + radius) * up
         velocity = along * 1.0 - sink * up
@@ -347,11 +347,11 @@ def test_a_disc_that_flies_almost_along_a_face_does_not_slip_in_behind_its_corne
             assert nx * velocity[0] + ny * velocity[1] > 0
 
 
-def test_a_sharp_corner_is_passed_by_what_flies_past_it() -> None:
+def test_a_disc_passes_a_sharp_corner() -> None:
     """A disc was once thought unable to miss a corner because it flew inward along the face.
 
     It had met the face's line beyond the corner; but the corner is sharp, and the disc leaves past
-    the other face long before it comes abreast of it.
+    the other face long before it reaches the corner.
     """
     wedge = Convex([(1.789, 0.723), (0.077, 0.276), (-0.148, -1.471)])
     shapes, edges = shape_table((Particle(0.0013), wedge))
@@ -380,10 +380,8 @@ def test_a_sharp_corner_is_passed_by_what_flies_past_it() -> None:
         Convex([(-9, 0.5), (-9, 0), (9, 0), (9, 0.5)], [1]),
     ],
 )
-def test_flights_that_only_touch_are_no_impacts(
-    above: Collider, below: Collider, gap: float
-) -> None:
-    """Resting, sliding and separating are none; what touches but approaches hits at time 0."""
+def test_touching_in_passing_is_no_impact(above: Collider, below: Collider, gap: float) -> None:
+    """Staying, sliding and separating are no impacts; touching and approaching is one at time 0."""
     shapes, edges = shape_table((above, below))
     place = (0.125, -1.0 - gap)
     assert not contact_between(shapes, edges, 0, 1, *place)[0]

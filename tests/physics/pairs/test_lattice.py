@@ -66,7 +66,7 @@ def test_first_impact_against_the_distance_to_the_union(solid, x, y, vx, vy, rad
 @settings(max_examples=300, deadline=None)
 @given(st.floats(1.0, 5.0), st.floats(0.1, 1.0), st.floats(-20.0, 20.0), st.floats(-9.0, -0.1))
 def test_a_row_of_cells_gives_the_same_bits_as_one_wall(x, y, vx, vy):
-    """Seams are where other engines' balls stumble over inner corners ("ghost collisions")."""
+    """In other engines, balls hit inner corners at the seams ("ghost collisions")."""
     row, wall = (
         make_lattice(64, 1, left=-32.0, top=0.0),
         make_lattice(1, 1, 64.0, left=-32.0, top=0.0),

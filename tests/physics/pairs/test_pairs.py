@@ -1,4 +1,4 @@
-"""What holds for every pair of kinds: the table is full, swapping mirrors, nothing is ever NaN."""
+"""What holds for every pair of kinds: it is registered, swapping mirrors it, nothing is NaN."""
 
 import math
 from itertools import combinations_with_replacement
@@ -50,7 +50,7 @@ def test_every_pair_of_kinds_is_registered_once() -> None:
     assert {collider.kind for collider in SAMPLES} == set(range(KINDS))
 
 
-# Numbers that computations trip over, and ordinary ones.
+# Numbers that are difficult to compute with, and ordinary ones.
 TRICKY = [0.0, -0.0, 0.5, 1.0, -1.0, 1.5, 2.0, 1e-9, -1e-300, 5e-324, 1e9, -1e9, 1e-160]
 coordinate = st.one_of(st.sampled_from(TRICKY), st.floats(-4, 4), st.integers(-4, 4).map(float))
 pairs = st.sampled_from(PAIRS)
@@ -62,7 +62,7 @@ def table(a: Collider, b: Collider) -> tuple[Any, Any]:
 
 @settings(max_examples=1500, deadline=None)
 @given(pairs, coordinate, coordinate)
-def test_swapping_a_contact_turns_its_normal_round(
+def test_swapping_a_contact_reverses_its_normal(
     pair: tuple[Collider, Collider], dx: float, dy: float
 ) -> None:
     shapes, edges = table(*pair)
@@ -72,7 +72,7 @@ def test_swapping_a_contact_turns_its_normal_round(
     assert np.isfinite([nx, ny, x, y]).all()
     if found:
         if pair[0] == pair[1] and dx == dy == 0.0:
-            # The same shape in the same place: nothing tells the two apart.
+            # The same shape at the same position: nothing tells the two apart.
             assert back[1:4] == (nx, ny, depth)
         else:
             assert back[1:4] == (-nx, -ny, depth)
@@ -83,10 +83,10 @@ def test_swapping_a_contact_turns_its_normal_round(
 @settings(max_examples=1500, deadline=None)
 @given(pairs, *[coordinate] * 4, st.sampled_from([0.0, 1.0, 1e9, math.inf]))
 @example((Particle(0.5), AxisAlignedRectangle(2, 1)), -2.0, 0.0, 5e-324, 0.0, math.inf)
-def test_swapping_an_impact_turns_its_normal_round(
+def test_swapping_an_impact_reverses_its_normal(
     pair: tuple[Collider, Collider], dx: float, dy: float, vx: float, vy: float, duration: float
 ) -> None:
-    """In the example the time is beyond all numbers: it was inf, but the normal was there."""
+    """In the example the time is too large for a number: it was inf, but there was a normal."""
     shapes, edges = table(*pair)
     time, nx, ny = impact_between(shapes, edges, 0, 1, dx, dy, vx, vy, duration)
     back = impact_between(shapes, edges, 1, 0, -dx, -dy, -vx, -vy, duration)
@@ -107,7 +107,7 @@ def test_swapping_an_impact_turns_its_normal_round(
 
 @settings(max_examples=1000, deadline=None)
 @given(pairs, *[coordinate] * 4, st.floats(0, 50))
-def test_the_cheap_test_never_says_no_to_what_touches(
+def test_bounding_boxes_never_miss_a_touch(
     pair: tuple[Collider, Collider], dx: float, dy: float, vx: float, vy: float, duration: float
 ) -> None:
     shapes, edges = table(*pair)
@@ -116,7 +116,7 @@ def test_the_cheap_test_never_says_no_to_what_touches(
         assert may_touch(shapes, 1, 0, -dx, -dy, -vx, -vy, duration)
 
 
-def test_the_cheap_test_says_no_to_what_stays_apart() -> None:
+def test_bounding_boxes_exclude_pairs_that_stay_apart() -> None:
     shapes, _ = shape_table((Particle(1), AxisAlignedRectangle(2, 2), AxisAlignedHalfPlane("-x")))
     assert not may_touch(shapes, 0, 1, 3.0, 0.0, 0.0, 0.0, math.inf)
     assert not may_touch(shapes, 0, 1, 3.0, 0.0, 1.0, 5.0, math.inf)
@@ -128,8 +128,8 @@ def test_the_cheap_test_says_no_to_what_stays_apart() -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), PAIRS)
-def test_every_pair_separates_or_says_that_it_cannot(a: Collider, b: Collider) -> None:
-    """One translation by the depth leaves nothing, or a touch, to be separated again."""
+def test_every_pair_separates_or_is_inseparable(a: Collider, b: Collider) -> None:
+    """After one translation by the depth the two are apart, or just touch."""
     rng = np.random.default_rng(3)
     shapes, edges = table(a, b)
     contacts = 0
@@ -143,14 +143,14 @@ def test_every_pair_separates_or_says_that_it_cannot(a: Collider, b: Collider) -
         dx, dy = dx + nx * depth, dy + ny * depth
         _, _, _, left, _, _ = contact_between(shapes, edges, 0, 1, dx, dy)
         assert left <= 1e-12
-        # A hair less does not separate.
+        # A slightly shorter translation does not separate.
         assert overlap_between(shapes, edges, 0, 1, dx - 1e-9 * nx, dy - 1e-9 * ny)
     assert contacts > 5
 
 
 @pytest.mark.parametrize(("a", "b"), PAIRS)
 def test_at_the_time_of_impact_every_pair_touches(a: Collider, b: Collider) -> None:
-    """Apart shortly before, overlapping shortly after: the engine's two halves agree."""
+    """They are apart shortly before and overlap shortly after: impact and contact agree."""
     rng = np.random.default_rng(4)
     shapes, edges = table(a, b)
     impacts = 0
@@ -174,7 +174,7 @@ def test_at_the_time_of_impact_every_pair_touches(a: Collider, b: Collider) -> N
 @pytest.mark.parametrize(
     ("a", "b"), [(a, b) for a, b in PAIRS if a.kind != b.kind or a.kind == Particle.kind]
 )
-def test_shapes_in_the_very_same_place_have_a_contact(a: Collider, b: Collider) -> None:
+def test_shapes_at_the_very_same_position_have_a_contact(a: Collider, b: Collider) -> None:
     shapes, edges = table(a, b)
     found, nx, ny, depth, _, _ = contact_between(shapes, edges, 0, 1, 0.0, 0.0)
     if found:
@@ -186,7 +186,7 @@ def test_shapes_in_the_very_same_place_have_a_contact(a: Collider, b: Collider) 
 
 @pytest.mark.parametrize(("first", "second"), [(0.5, 1.5), (1.5, 0.5)])
 def test_coincident_discs_of_different_sizes_swap(first: float, second: float) -> None:
-    """The data decide who comes first where places cannot."""
+    """Where positions cannot order the two, their data does."""
     shapes, edges = shape_table((Particle(first), Particle(second)))
     one = contact_between(shapes, edges, 0, 1, 0.0, 0.0)
     other = contact_between(shapes, edges, 1, 0, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Bounces conserve what they must, to the bit along the axes, and never drift."""
+"""Bounces conserve momentum and energy, exactly along the axes, and never drift."""
 
 import math
 from typing import Any
@@ -21,7 +21,7 @@ def unit(angle: float) -> tuple[float, float]:
 
 
 @given(speeds, speeds, st.sampled_from([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
-def test_off_an_axis_aligned_wall_a_component_changes_its_sign_to_the_bit(
+def test_an_axis_aligned_wall_reverses_one_component_exactly(
     vx: float, vy: float, normal: tuple[float, float]
 ) -> None:
     expected = (-vx, vy) if normal[0] else (vx, -vy)
@@ -51,7 +51,7 @@ def test_a_bounce_conserves_momentum_and_gives_back_its_share_of_speed(
     if approach <= 0:
         assert (w1x, w1y, w2x, w2y, impulse) == (v1x, v1y, v2x, v2y, 0)
         return
-    # The formula of the lecture, word for word.
+    # The formula of the lecture on collisions in games, word for word.
     assert impulse == pytest.approx(-(e + 1) * approach / (1 / m1 + 1 / m2), rel=1e-12)
     scale = (m1 + m2) * speed
     for before, after, share in (
@@ -88,9 +88,9 @@ def test_two_discs_of_unequal_mass_in_closed_form(e: float) -> None:
     assert w2 == pytest.approx(((m2 - e * m1) * v2 + (1 + e) * m1 * v1) / (m1 + m2), rel=1e-15)
 
 
-def test_what_has_no_mass_does_not_yield() -> None:
+def test_a_body_without_mass_does_not_yield() -> None:
     assert bounce_velocities(1, 2, -3, 4, 0, 0, 1, 0, 1) == (1, 2, -3, 4, 0)
-    # A static body that moves by itself, as a paddle does, gives its speed.
+    # A static body that moves by itself, such as a paddle, passes on its speed.
     assert bounce_velocities(0, 0, -3, 4, 0.5, 0, 1, 0, 1)[:4] == (-6, 0, -3, 4)
 
 
@@ -128,7 +128,7 @@ def test_a_million_bounces_off_axis_aligned_walls_keep_the_energy_to_the_bit() -
 def test_a_million_bounces_off_slanted_walls_do_not_drift(
     walls: list[float], heading: float
 ) -> None:
-    """A normal is a unit vector only up to rounding; always the same, that must not add up."""
+    """A normal is a unit vector only up to rounding. The same error must not accumulate."""
     vx, vy = unit(heading)
     wx, wy = bounce_around(np.array([unit(wall) for wall in walls]), vx, vy, 1_000_000)
     assert wx * wx + wy * wy == pytest.approx(vx * vx + vy * vy, rel=1e-9)

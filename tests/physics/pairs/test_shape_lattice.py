@@ -1,4 +1,4 @@
-"""Any shape among the boxes of a lattice: when it meets which, by an independent search."""
+"""Any shape among the boxes of a lattice: when it meets which cell, by an independent search."""
 
 import math
 
@@ -67,7 +67,7 @@ def test_the_first_impact_is_where_shapely_finds_the_first_overlap(shape):
         assert solid[cell] != 0
         assert math.isclose(math.hypot(normal_x, normal_y), 1.0, rel_tol=1e-12)
         assert normal_x * vx + normal_y * vy < 0.0
-        # Until then nothing is overlapped, and at that time the cell is touched.
+        # Until then it overlaps nothing, and at that time it touches the cell.
         there = np.add(outline, [x + vx * time, y + vy * time])
         before = union_all([Polygon(np.add(outline, [x, y])), Polygon(there)]).convex_hull
         assert before.intersection(bricks).area < 1e-9
@@ -85,8 +85,8 @@ def test_a_shape_far_away_meets_nothing():
         )
 
 
-def test_what_overlaps_and_recedes_meets_nothing_and_hides_nothing():
-    """A shape that a rounding error leaves within a brick flies off it, to the next one."""
+def test_a_receding_overlap_is_no_impact_and_hides_none():
+    """A shape that a rounding error leaves inside a brick moves off it, to the next one."""
     lattice = make_lattice()
     shapes, edges = shape_table([SHAPES[1], AxisAlignedRectangle(WIDTH, HEIGHT)])
     solid = np.zeros(COLUMNS * ROWS, np.uint8)
@@ -122,7 +122,7 @@ class Thing:
 
 @pytest.mark.parametrize("first", range(5))
 @pytest.mark.parametrize("second", range(5))
-def test_approach_is_the_time_of_impact_of_what_comes_nearer(first, second):
+def test_approach_is_the_time_of_impact_of_approaching_pairs(first, second):
     rng = np.random.default_rng(first * 5 + second)
     a, b = COLLIDERS[first], COLLIDERS[second]
     shapes, edges = shape_table([a, b])

@@ -35,7 +35,7 @@ SAMPLES: tuple[Collider, ...] = (
 
 @pytest.mark.parametrize("collider", SAMPLES)
 def test_colliders_are_values(collider: Collider) -> None:
-    assert collider.edges is not None  # fills what is computed once
+    assert collider.edges is not None  # fills the cached properties
     twin = pickle.loads(pickle.dumps(collider))
     assert twin == collider == copy.deepcopy(collider)
     assert hash(twin) == hash(collider)
@@ -47,14 +47,14 @@ def test_colliders_are_values(collider: Collider) -> None:
 
 
 @pytest.mark.parametrize("collider", SAMPLES)
-def test_a_collider_prints_as_what_makes_it(collider: Collider) -> None:
+def test_a_collider_prints_as_the_expression_that_makes_it(collider: Collider) -> None:
     remade = eval(repr(collider))
     assert type(remade) is type(collider)
     rebuilt, original = (np.array(c.edges, float) for c in (remade, collider))
     np.testing.assert_allclose(rebuilt, original, rtol=0, atol=1e-15)
 
 
-def test_what_colliders_print() -> None:
+def test_printed_colliders() -> None:
     assert repr(Particle(1)) == "Particle(radius=1.0)"
     assert repr(AxisAlignedHalfPlane("+y")) == "AxisAlignedHalfPlane(direction='+y', offset=0.0)"
     assert repr(Rectangle(2, 1)) == "Rectangle(width=2.0, height=1.0, rotation=0.0)"
@@ -97,7 +97,7 @@ def test_sizes_must_be_numbers(value: Any) -> None:
 
 
 @pytest.mark.parametrize("number", [np.float32(0.5), np.int64(2), np.float64(0.1)])
-def test_numbers_of_numpy_become_floats(number: Any) -> None:
+def test_numpy_numbers_become_floats(number: Any) -> None:
     assert type(Particle(number).radius) is float
     assert hash(Particle(number)) == hash(Particle(float(number)))
 
@@ -168,7 +168,7 @@ def test_quarter_turns_are_exact(quarters: int) -> None:
         ),
     ],
 )
-def test_a_polygon_that_is_none_is_refused(vertices: list[Any], words: str) -> None:
+def test_an_invalid_polygon_is_refused(vertices: list[Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Convex(vertices)
 
@@ -186,13 +186,13 @@ def test_open_edges_must_be_edges(open_edges: list[int], words: str) -> None:
         Convex(SQUARE, open_edges)
 
 
-def test_edges_in_line_are_joined() -> None:
+def test_edges_on_one_line_are_joined() -> None:
     square = Convex(SQUARE)
     assert Convex([(0, 0), (0.3, 0), (0.7, 0), (1, 0), (1, 1), (0.5, 1), (0, 1)]) == square
-    # One of two pieces of a side missing: the other one's half-plane still bounds the region.
+    # One of two pieces of a side is missing: the other one's half-plane still bounds the region.
     assert Convex([(0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1)], [1]) == square
     assert Convex([(0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1)], [0, 1]).is_open
-    # Nearly in line, as rounding leaves it.
+    # Nearly on one line, as after rounding.
     assert len(Convex([(0, 0), (0.1, 0.3), (0.2, 0.6 + 1e-16), (0.3, 0.9), (-1, 1)]).edges) == 3
 
 
@@ -248,7 +248,7 @@ def test_an_intersection_without_inside_is_refused(planes: list[Any]) -> None:
         Convex.from_half_planes(*[HalfPlane(normal, offset) for normal, offset in planes])
 
 
-def test_half_planes_are_needed_to_intersect() -> None:
+def test_an_intersection_needs_half_planes() -> None:
     with pytest.raises(ValueError, match="at least one"):
         Convex.from_half_planes()
     with pytest.raises(ValueError, match="at least one"):
@@ -260,7 +260,7 @@ def test_half_planes_are_needed_to_intersect() -> None:
 
 
 def clip(corners: list[tuple[float, float]], plane: HalfPlane) -> list[tuple[float, float]]:
-    """Return what a half-plane leaves of a polygon (Sutherland and Hodgman 1974)."""
+    """Return the part of a polygon in a half-plane (Sutherland and Hodgman 1974)."""
     (nx, ny), kept = plane.normal, []
     for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
         a, b = nx * ax + ny * ay - plane.offset, nx * bx + ny * by - plane.offset
@@ -287,9 +287,9 @@ LINES = st.lists(
 def test_the_edges_bound_the_intersection_of_the_half_planes(
     lines: list[tuple[float, float]],
 ) -> None:
-    """Against clipping a large box, and point by point: inside all that are left is inside all.
+    """Compare with a clipped large box, and point by point: the remaining edges say what is inside.
 
-    (GEOS loses the triangle of the example, in which one half-plane comes twice.)
+    (GEOS fails for the triangle of the example, in which one half-plane occurs twice.)
     """
     planes = [HalfPlane((math.cos(angle), math.sin(angle)), offset) for angle, offset in lines]
     clipped = [(50.0, 50.0), (-50.0, 50.0), (-50.0, -50.0), (50.0, -50.0)]
@@ -298,7 +298,7 @@ def test_the_edges_bound_the_intersection_of_the_half_planes(
     try:
         region = Convex.from_half_planes(*planes)
     except ValueError:
-        # Nothing left, unless it is as thin as rounding or lies beyond the clipping box.
+        # It is empty, unless it is as thin as rounding or beyond the clipping box.
         assert area(clipped) < 1e-9
         return
     points = np.random.default_rng(0).uniform(-5, 5, (200, 2))

@@ -27,7 +27,7 @@ from arkanoid.physics import (
     WorldBatch,
 )
 
-# No shape of an angle that is no quarter turn: the cosine is the platform's.
+# All angles are quarter turns: other cosines depend on the platform.
 SHAPES: tuple[Collider, ...] = (
     Particle(0.3),
     AxisAlignedRectangle(0.6, 0.4),
@@ -38,7 +38,7 @@ SHAPES: tuple[Collider, ...] = (
 
 
 def make_world(continuous: bool = True, max_hits: int = 1000) -> World:
-    """Return a room with everything in it."""
+    """Return a room with bodies of every kind."""
     world = World(continuous=continuous, max_hits=max_hits)
     world.add(Body(HalfPlane((8, 1)), (0, 0)))
     world.add(Body(AxisAlignedHalfPlane("-x"), (9, 0)))
@@ -124,7 +124,7 @@ def test_views_are_live_and_static_bodies_are_not_in_them() -> None:
     assert batch.times.tolist() == [2, 2, 2]
 
 
-def test_a_batch_and_its_world_go_their_own_ways() -> None:
+def test_a_batch_and_its_world_are_independent() -> None:
     world, control = make_world(), make_world()
     batch = WorldBatch(world, 2)
     batch.step(1.0)
@@ -194,8 +194,8 @@ def test_closing_ends_the_threads_and_may_be_done_twice() -> None:
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-def test_what_is_no_number_is_an_error_and_can_be_mended(threads: int) -> None:
-    """When the first part raised at once, the other threads went on behind the caller's back."""
+def test_a_number_that_is_not_finite_is_an_error_and_can_be_corrected(threads: int) -> None:
+    """When the first part raised at once, the other threads continued after the call had ended."""
     batch = WorldBatch(make_world(), 6, threads=threads)
     batch.step(0.25)
     before = batch.positions.copy()
@@ -211,11 +211,11 @@ def test_what_is_no_number_is_an_error_and_can_be_mended(threads: int) -> None:
     batch.close()
 
 
-# Compiled and interpreted, today and tomorrow.
+# Compiled or interpreted, now or later.
 
 
 def digest() -> str:
-    """Return a hash of all numbers of a long story, in which everything happens."""
+    """Return a hash of all numbers of a long run in which everything happens."""
     total = hashlib.sha256()
 
     def note(*numbers: Any) -> None:
@@ -253,11 +253,11 @@ def quiet_digest() -> str:
         return digest()
 
 
-# The numbers of this story. If they change although nothing was to change, something is wrong.
+# The hash of this run. If it changes although no result should change, something is wrong.
 GOLDEN = "0c2337ab434eb73a6e2ecaa1d131af6b1b55e6f975d462315f66f6d6b2119004"
 
 
-def test_the_story_is_the_one_that_was_committed() -> None:
+def test_the_golden_hash() -> None:
     assert quiet_digest() == GOLDEN
 
 

@@ -1,7 +1,6 @@
-"""What a world refuses, in words that say which value is wrong and why."""
+"""What a world refuses; each message says which value is wrong and why."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,25 +8,14 @@ import pytest
 from arkanoid.physics import (
     AxisAlignedHalfPlane,
     Body,
-    Collider,
     HalfPlane,
     InseparableError,
-    Particle,
     World,
     WorldBatch,
 )
+from helpers.bodies import DISC, FLOOR, Fog
 
-FLOOR = Body(AxisAlignedHalfPlane("+y"))
-DISC = Particle(0.5)
 NAN, INF = math.nan, math.inf
-
-
-@dataclass
-class Fog:
-    """Someone's own class with nothing but a shape and a place."""
-
-    collider: Collider
-    position: Any
 
 
 TWO = [FLOOR, Body(DISC, (0, 2), (0, 1), mass=1)]
@@ -72,7 +60,7 @@ WRONG: list[tuple[str, Any, type[Exception], str]] = [
 @pytest.mark.parametrize(
     ("call", "error", "message"), [row[1:] for row in WRONG], ids=[row[0] for row in WRONG]
 )
-def test_what_is_wrong_is_refused_and_changes_nothing(
+def test_invalid_arguments_are_refused_and_change_nothing(
     call: Any, error: type[Exception], message: str, is_built: bool
 ) -> None:
     world = World(TWO)
@@ -86,11 +74,11 @@ def test_what_is_wrong_is_refused_and_changes_nothing(
     assert (world.time, len(world)) == before[2:]
 
 
-def test_a_body_that_outgrows_the_numbers_is_an_error_at_once() -> None:
-    """It was one in the step after, if at all: infinity equals itself, and the plans held on.
+def test_a_position_too_large_for_a_number_is_an_error_at_once() -> None:
+    """It was an error one step later, or never: infinity equals itself, so the plans still held.
 
-    Between two walls that give back more than they get, a ball is faster and faster, until its
-    place is no number.
+    Between two walls with restitution above 1, a ball is faster and faster, until its position is
+    too large for a number.
     """
     fast = World([Body(DISC, (0, 0), (1e300, 0), mass=1)])
     room = World([FLOOR, Body(AxisAlignedHalfPlane("-y"), (0, 3))])
@@ -98,15 +86,15 @@ def test_a_body_that_outgrows_the_numbers_is_an_error_at_once() -> None:
     for world in (fast, room):
         before = world.snapshot()
         for _ in range(2):
-            with pytest.raises(ValueError, match=r"not finite: .* outgrown"):
+            with pytest.raises(ValueError, match=r"not finite: .* too large"):
                 world.step(1e10)
         world.restore(before)
         world.step(1.0)
         assert np.isfinite(world.positions).all()
 
 
-def test_two_bodies_that_nothing_separates_are_named() -> None:
-    """Two half-planes askew: the error says which, and the world can be mended."""
+def test_inseparable_bodies_are_named() -> None:
+    """For two half-planes at an angle, the error says which, and the world can be corrected."""
     ramp = Body(HalfPlane((1, 2)), (3, 4), mass=1)
     world = World([Body(DISC), FLOOR, ramp])
     with pytest.raises(InseparableError, match="no finite translation separates") as caught:
@@ -120,7 +108,7 @@ def test_two_bodies_that_nothing_separates_are_named() -> None:
 
 
 @pytest.mark.parametrize("how", ["static", "masked", "sensor", "kinematic", "back to back"])
-def test_only_what_would_have_to_be_separated_is_inseparable(how: str) -> None:
+def test_only_bodies_that_must_be_separated_are_inseparable(how: str) -> None:
     world = World([FLOOR])
     if how == "back to back":
         world.add(Body(AxisAlignedHalfPlane("-y"), (0, 1), mass=1))

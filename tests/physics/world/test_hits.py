@@ -1,4 +1,4 @@
-"""Hits and what they do: speeds in closed form, who meets whom, and the lecture's procedure."""
+"""Hits and what they do: speeds in closed form, which bodies meet, the lecture's procedure."""
 
 from itertools import combinations
 from typing import Any
@@ -10,7 +10,6 @@ from arkanoid.physics import (
     AxisAlignedHalfPlane,
     AxisAlignedRectangle,
     Body,
-    Collider,
     Convex,
     HalfPlane,
     Particle,
@@ -21,22 +20,13 @@ from arkanoid.physics import (
     detect,
     relax,
 )
+from helpers.bodies import DISC, FLOOR, SHAPES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-DISC = Particle(0.5)
-FLOOR = Body(AxisAlignedHalfPlane("+y"))
-
-SHAPES: tuple[Collider, ...] = (
-    DISC,
-    AxisAlignedRectangle(1, 0.6),
-    Rectangle(0.9, 0.5, 0.7),
-    Convex([(-0.5, -0.4), (0.6, 0), (-0.3, 0.5)]),
-)
-
 
 def moving_scene(seed: int) -> list[Body]:
-    """Return walls, two obstacles, a kinematic body and twelve that move, apart from each other."""
+    """Return walls, two obstacles, a kinematic body and twelve dynamic ones, all apart."""
     rng = np.random.default_rng(seed)
     bodies = [
         Body(HalfPlane((1, 0.1)), (0, 0)),
@@ -61,14 +51,14 @@ def moving_scene(seed: int) -> list[Body]:
     return bodies
 
 
-# What a hit says.
+# The fields of a hit.
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_hits_tell_all_that_happened(seed: int) -> None:
-    """The bodies fly straight from hit to hit, and each hit's impulse is all that changes them.
+def test_hits_explain_every_change_of_velocity(seed: int) -> None:
+    """Bodies move straight from hit to hit, and only the impulses of hits change velocities.
 
-    And there the two touch: at the point, back to back along the normal, having approached.
+    At each hit the two touch: at its point, along its normal, after they approached.
     """
     bodies = moving_scene(seed)
     world = World(bodies)
@@ -107,17 +97,17 @@ def check_touch(a: Body, b: Body, normal: Any, point: Any) -> None:
     assert detect(a, Body(b.collider, b.position - near * normal))
     assert not detect(a, Body(b.collider, b.position + near * normal))
     for body in (a, b):
-        # On the surface: a small disc there reaches into it, a point is not deep inside.
+        # It is on the surface: a small disc there reaches in, a point is not deep inside.
         assert detect(Body(Particle(near), point), body)
         depth = contact(Body(Particle(0), point), body)
         assert depth is None or depth.depth < near
 
 
-def test_each_pair_once_and_static_pairs_never() -> None:
+def test_each_pair_hits_once_and_static_pairs_never() -> None:
     overlapping = [Body(AxisAlignedRectangle(2, 2), (x, 0)) for x in (0, 0.5)]
     world = World([*overlapping, FLOOR, Body(DISC, (0.25, 5), (0, -1), mass=1)])
     hits = world.step(4.0)
-    # Both boxes are met at once: the first one turns the disc round, the other one then sees it go.
+    # The disc meets both boxes at once. The first reverses it: it moves away from the other.
     assert hits[["a", "b"]].tolist() == [(0, 3)]
     assert hits["time"].tolist() == [3.5]
 
@@ -132,8 +122,8 @@ def test_the_normal_goes_from_the_lower_index_to_the_higher(swapped: bool) -> No
     assert hit["impulse"] == -2
 
 
-def test_a_cradle_hands_the_speed_on() -> None:
-    """Touching discs: hits of one moment, one after the other."""
+def test_a_cradle_passes_the_speed_on() -> None:
+    """Touching discs hit each other at the same time, one after the other."""
     world = World(Body(DISC, (x, 0), mass=1) for x in range(1, 6))
     first = world.add(Body(DISC, (-3, 0), (2, 0), mass=1))
     hits = world.step(3.0)
@@ -192,7 +182,7 @@ def test_two_discs_head_on(
     ],
 )
 def test_each_hit_changes_the_next_flight(e: float, times: list[float]) -> None:
-    """Between floor and ceiling each flight takes 1 / e times as long as the one before."""
+    """Between floor and ceiling each flight takes 1 / e times as long as the last one."""
     world = World([FLOOR, Body(AxisAlignedHalfPlane("-y"), (0, 2))])
     world.add(Body(DISC, (0, 0.5), (0, 1), mass=1, restitution=e))
     hits = world.step(times[-1])
@@ -200,7 +190,7 @@ def test_each_hit_changes_the_next_flight(e: float, times: list[float]) -> None:
     assert world.velocities[2, 1] == (-e) ** len(times)
 
 
-# Who is moved by nothing.
+# Bodies that collisions do not move.
 
 
 @given(
@@ -210,7 +200,7 @@ def test_each_hit_changes_the_next_flight(e: float, times: list[float]) -> None:
     st.sampled_from([1e-9, 1.0, 1e9]),
 )
 @settings(max_examples=60, deadline=None)
-def test_a_paddle_hits_a_ball_and_does_not_feel_it(
+def test_a_paddle_hits_a_ball_and_keeps_its_motion(
     paddle: float, approach: float, e: float, mass: float
 ) -> None:
     world = World([Body(AxisAlignedRectangle(1, 4), (0, 0), (paddle, 0.5))])
@@ -237,8 +227,10 @@ bits = st.integers(-1, 7)
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(bits, bits), min_size=2, max_size=5))
-def test_two_meet_if_each_has_a_bit_of_the_other(filters: list[tuple[int, int]]) -> None:
-    """Every pair alone, and all in one place, where those that meet push each other."""
+def test_two_bodies_meet_if_each_mask_has_the_other_category(
+    filters: list[tuple[int, int]],
+) -> None:
+    """Every pair alone, and all at one position, where those that meet push each other."""
     for (number, one), (index, other) in combinations(enumerate(filters), 2):
         world = World()
         world.add(Body(DISC, (0, 0), (1, 0), mass=1), category=one[0], mask=one[1])
@@ -252,14 +244,14 @@ def test_two_meet_if_each_has_a_bit_of_the_other(filters: list[tuple[int, int]])
         assert (world.positions[:, 0].tolist() == [-0.25, 0.75]) == bool(meets)
 
 
-# The lecture's procedure.
+# The procedure of the lecture on collisions in games: detection, relaxation, bounce.
 
 
 def by_hand(bodies: list[Body], dt: float) -> list[tuple[int, int]]:
     """Move all, then detect, relax and bounce pair by pair; return the pairs that overlapped.
 
-    Every body that moves, in order, meets walls without end, then other static ones, then those
-    that move and come later.
+    Every moving body, in order, meets unbounded walls, then other static bodies, then later
+    moving ones.
     """
     moving = [i for i, body in enumerate(bodies) if body.mass or body.velocity.any()]
     static = [i for i in range(len(bodies)) if i not in moving]
@@ -280,7 +272,7 @@ def by_hand(bodies: list[Body], dt: float) -> list[tuple[int, int]]:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_discrete_steps_are_the_procedure_by_hand(seed: int) -> None:
+def test_discrete_steps_equal_the_procedure_by_hand(seed: int) -> None:
     rng = np.random.default_rng(seed)
     bodies = [
         Body(HalfPlane((1, 0.1))),

@@ -1,4 +1,4 @@
-"""What the engine proves: no tunnelling, no lost time, no energy from nowhere, no seams."""
+"""What the engine proves: no tunnelling, no lost time, no energy gained, no seams."""
 
 import math
 from fractions import Fraction
@@ -20,24 +20,15 @@ from arkanoid.physics import (
     WorldBatch,
     time_of_impact,
 )
+from helpers.bodies import room
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 Array = npt.NDArray[np.float64]
 
 
-def room(width: float, height: float) -> list[Body]:
-    """Return four walls about [0, width] x [0, height]."""
-    return [
-        Body(AxisAlignedHalfPlane("+x")),
-        Body(AxisAlignedHalfPlane("-x", -width)),
-        Body(AxisAlignedHalfPlane("+y")),
-        Body(AxisAlignedHalfPlane("-y", -height)),
-    ]
-
-
 def unfolded(start: float, velocity: float, time: float, low: float, high: float) -> float:
-    """Return where a point is that flies to and fro between two walls, in exact arithmetic."""
+    """Return where a point is that moves back and forth between two walls, exactly."""
     width = Fraction(high) - Fraction(low)
     way = (Fraction(start) - Fraction(low) + Fraction(velocity) * Fraction(time)) % (2 * width)
     return float(Fraction(low) + (way if way <= width else 2 * width - way))
@@ -79,7 +70,7 @@ def test_a_ball_in_a_box_is_where_the_unfolded_box_says(
         unfolded(start[0], velocity[0], steps, 0.125, 1.875),
         unfolded(start[1], velocity[1], steps, 0.125, 0.875),
     ]
-    # Each bounce rounds once or twice, in the last digit of a place.
+    # Each bounce rounds once or twice, in the last digit of a position.
     assert world.positions[-1] == pytest.approx(expected, abs=1e-15 * (10 + 4 * hits))
     assert abs(world.velocities[-1]).tolist() == [abs(v) for v in velocity]
 
@@ -88,18 +79,18 @@ def test_a_ball_in_a_box_is_where_the_unfolded_box_says(
     "widths",
     [1e5, 1e6, pytest.param(1e9, marks=pytest.mark.slow)],
 )
-def test_no_number_of_box_widths_a_step_is_too_many(widths: float) -> None:
+def test_a_step_may_be_any_number_of_box_widths(widths: float) -> None:
     velocity = (0.61803398875 * widths, -widths)
     ball = Body(Particle(0.125), (0.4, 0.3), velocity, mass=1)
     world = World([*room(1, 1), ball], max_hits=10**10)
     duration = 0.9973
-    # The last hits alone would be 64 GB of a billion: steps keep what is returned in bounds.
+    # A billion hits would be 64 GB: several steps limit how many are returned at once.
     parts = max(1, round(widths / 1e6))
     hits = sum(len(world.step(duration / parts)) for _ in range(parts))
     x, y = world.positions[-1]
     time = duration / parts * parts
     assert hits == pytest.approx((abs(velocity[0]) + abs(velocity[1])) * time / 0.75, abs=2.5)
-    # A step's length itself is known to one part in 1e16 only.
+    # The length of a step itself is known only to one part in 1e16.
     error = 1e-15 * hits + 4e-16 * widths * parts
     assert x == pytest.approx(unfolded(0.4, velocity[0], time, 0.125, 0.875), abs=error)
     assert y == pytest.approx(unfolded(0.3, velocity[1], time, 0.125, 0.875), abs=error)
@@ -107,7 +98,7 @@ def test_no_number_of_box_widths_a_step_is_too_many(widths: float) -> None:
 
 @pytest.mark.parametrize("speed", [1.0, 50.0, 1e4, 1e8])
 def test_no_wall_is_too_thin(speed: float) -> None:
-    """Two hundred balls at walls of a millionth of their size, from all sides."""
+    """Two hundred balls meet walls of a millionth of their size, from all sides."""
     world = World()
     for index in range(200):
         angle = 2 * math.pi * index / 200
@@ -125,8 +116,8 @@ def test_no_wall_is_too_thin(speed: float) -> None:
         assert only.positions[1] @ along < -0.5
 
 
-def test_every_bounce_that_is_due_is_made() -> None:
-    """Eight units a step between walls a little more than a ball's width and 1.2 apart."""
+def test_no_bounce_is_missing() -> None:
+    """Eight units per step, between walls a little more than a ball's width and 1.2 apart."""
     world = World([*room(1.2, 5), Body(Particle(0.125), (0.6, 2), (8.0, 0.0), mass=1)])
     hits = sum(len(world.step(1.0)) for _ in range(100))
     due = math.floor((0.6 - 0.125 + 8.0 * 100) / (1.2 - 0.25))
@@ -139,7 +130,7 @@ def test_every_bounce_that_is_due_is_made() -> None:
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 10**6), st.integers(2, 9))
 def test_a_step_equals_its_parts(seed: int, parts: int) -> None:
-    """Up to rounding, which a chaotic scene lets grow: so for a few hits a body only."""
+    """This holds up to rounding, which grows in a chaotic scene: so there are few hits per body."""
     whole, _ = billiards(12, seed)
     divided, _ = billiards(12, seed)
     whole.add(Body(Convex([(1, 0.2), (1.3, 0.8), (0.7, 0.8)]), (2, 2)))
@@ -178,7 +169,7 @@ def test_a_million_bounces_off_slanted_walls_keep_the_energy() -> None:
     assert abs(world.positions[-1]).max() < 1.6
 
 
-def test_discs_keep_their_energy_their_momentum_and_to_themselves() -> None:
+def test_discs_keep_energy_and_momentum_and_never_overlap() -> None:
     world, width = billiards(200, 1)
     before = energy(world)
     for _ in range(20):
@@ -223,7 +214,7 @@ def test_colliding_blocks_count_pi(digits: int, count: int) -> None:
 
 
 def test_the_published_discs_meet_at_nine_tenths() -> None:
-    """Radii 1/2, centres 10 apart, closing at 10 a unit of time."""
+    """Radii 1/2, centres 10 apart, approaching at 10 per unit of time."""
     one = Body(Particle(0.5), (0, 0), (5, 0), mass=1)
     other = Body(Particle(0.5), (10, 0), (-5, 0), mass=1)
     impact = time_of_impact(one, other)
@@ -256,7 +247,7 @@ def bouncing_balls(ceiling: list[Body], floor: list[Body], balls: int) -> World:
     rng = np.random.default_rng(7)
     for _ in range(balls):
         place, velocity = rng.uniform((0.2, 1.2), (10.8, 2.3)), rng.uniform(-1, 1, 2)
-        # They see the walls only.
+        # They meet only the walls.
         world.add(Body(Particle(0.125), place, velocity, mass=1), category=2, mask=1)
     return world
 
@@ -278,10 +269,10 @@ def test_a_row_of_bricks_is_a_wall_over_a_million_impacts() -> None:
 
 @pytest.mark.parametrize("is_left_first", [True, False])
 @pytest.mark.parametrize("vx", [0.0, 0.3, -0.3, 1e-9, 5.0])
-def test_coming_down_on_a_seam_meets_a_face(vx: float, is_left_first: bool) -> None:
-    """The corner of the neighbouring box was met first, by a rounding, and threw the ball aside.
+def test_a_disc_that_lands_on_a_seam_meets_a_face(vx: float, is_left_first: bool) -> None:
+    """By rounding, the corner of the neighbouring box was met first, and deflected the ball.
 
-    Within 1e-8 of a seam the two boxes are met at the same time as far as numbers can tell.
+    Within 1e-8 of a seam the two boxes are met at the same time, as far as numbers can tell.
     """
     offsets = [0.0, *(sign * 10.0**-k for k in range(5, 18) for sign in (1, -1))]
     for offset in offsets:
@@ -293,7 +284,7 @@ def test_coming_down_on_a_seam_meets_a_face(vx: float, is_left_first: bool) -> N
         assert world.velocities[-1].tolist() == [vx, 1]
 
 
-# Proof 8: determinism. (Compiled and interpreted, and the golden hash: test_world_batch.)
+# Proof 8: determinism. (Compiled and interpreted, and the golden hash: test_batch.)
 
 
 @pytest.mark.parametrize(("num_worlds", "threads"), [(1, 1), (4096, 1), (4096, 3)])
@@ -309,7 +300,7 @@ def test_the_batch_does_not_change_a_bit(num_worlds: int, threads: int) -> None:
 
 
 def test_a_thousand_discs_among_ten_thousand_bricks() -> None:
-    """What it takes is a matter of benchmarks; here: that it is practical, and right."""
+    """Benchmarks measure the time; this shows that it is practical, and right."""
     width = 200.0
     world = World(room(width, width))
     rng = np.random.default_rng(5)

@@ -1,4 +1,4 @@
-"""Questions to a world, against asking every body one by one."""
+"""Queries of a world, compared with a test of every body, one by one."""
 
 import math
 from typing import Any
@@ -9,35 +9,25 @@ from arkanoid.physics import (
     AxisAlignedHalfPlane,
     AxisAlignedRectangle,
     Body,
-    Collider,
-    Convex,
     HalfPlane,
     Particle,
-    Rectangle,
     World,
     contact,
     detect,
     time_of_impact,
 )
+from helpers.bodies import OPEN_SHAPE, SHAPES, bodies_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-SHAPES: tuple[Collider, ...] = (
-    Particle(0.5),
-    AxisAlignedRectangle(1, 0.6),
-    Rectangle(0.9, 0.5, 0.7),
-    Convex([(-0.5, -0.4), (0.6, 0), (-0.3, 0.5)]),
-    Convex([(1, 1), (-1, 1), (-1, 0), (1, 0)], [3], 0.25),
-)
-
 
 def scene() -> tuple[World, list[Body], list[int]]:
-    """Return a world that has been stepped, its bodies where they are now, and their categories."""
+    """Return a world that has been stepped, its bodies as they are now, and their categories."""
     rng = np.random.default_rng(4)
     world = World([Body(HalfPlane((1, 3)), (0, -6)), Body(AxisAlignedHalfPlane("-x"), (7, 0))])
     categories = [1, 1]
     for index in range(20):
-        category, shape = 1 << int(rng.integers(4)), SHAPES[index % 5]
+        category, shape = 1 << int(rng.integers(4)), (*SHAPES, OPEN_SHAPE)[index % 5]
         place, velocity = rng.uniform(-5, 5, 2), rng.normal(size=2) * (index % 3 > 0)
         if index % 5 == 4 or index % 4 == 0:
             body = Body(shape, place, velocity if index % 5 != 4 else (0, 0))
@@ -46,7 +36,7 @@ def scene() -> tuple[World, list[Body], list[int]]:
         world.add(body, category=category, mask=0, sensor=index % 7 == 0)
         categories.append(category)
     world.step(0.75, steps=3)
-    return world, [world.body(index) for index in range(len(world))], categories
+    return world, bodies_of(world), categories
 
 
 WORLD, BODIES, CATEGORIES = scene()
@@ -57,7 +47,7 @@ masks = st.sampled_from([-1, -1, -1, 0, 1, 2, 6, 15, 1 << 62])
 
 @settings(max_examples=150, deadline=None)
 @given(places, masks)
-def test_points_are_in_whoever_has_them_inside(point: tuple[float, float], mask: int) -> None:
+def test_points_are_in_the_bodies_that_contain_them(point: tuple[float, float], mask: int) -> None:
     expected = [
         index
         for index, (body, category) in enumerate(zip(BODIES, CATEGORIES, strict=True))
@@ -70,7 +60,7 @@ def test_points_are_in_whoever_has_them_inside(point: tuple[float, float], mask:
 
 @settings(max_examples=150, deadline=None)
 @given(places, places, masks)
-def test_boxes_overlap_whom_they_overlap(
+def test_boxes_find_the_bodies_that_they_overlap(
     corner: tuple[float, float], opposite: tuple[float, float], mask: int
 ) -> None:
     lower, upper = np.minimum(corner, opposite), np.maximum(corner, opposite)
@@ -86,7 +76,7 @@ def test_boxes_overlap_whom_they_overlap(
 
 @settings(max_examples=300, deadline=None)
 @given(places, places, st.sampled_from([0.0, 0.0, 0.25, 2.0]), masks)
-def test_rays_meet_whom_they_meet_first(
+def test_rays_find_the_first_body(
     start: tuple[float, float], end: tuple[float, float], radius: float, mask: int
 ) -> None:
     probe = Body(Particle(radius), start, np.subtract(end, start))
@@ -106,8 +96,8 @@ def test_rays_meet_whom_they_meet_first(
     assert hit.point == pytest.approx(np.add(start, time * np.subtract(end, start)), abs=1e-15)
 
 
-def test_bodies_are_where_they_are_now() -> None:
-    """They were where they would have been at time 0, had they always flown as they do now."""
+def test_queries_use_present_positions() -> None:
+    """They once used positions extrapolated back to time 0 with the present velocities."""
     world = World([Body(Particle(0.5), (0, 0), (1, 0), mass=1)])
     for time in (0, 5, 10):
         assert world.query_point((time, 0.25)).tolist() == [0]
@@ -138,7 +128,7 @@ def test_what_a_ray_returns() -> None:
     assert cast.normal.tolist() == [0, 1]
     assert world.query_ray((0, 0), (3.999, 0)) is None
     assert world.query_ray((0, 0), (-8, 0)) is None
-    # Along a side it only touches.
+    # Along a side, it only touches.
     assert world.query_ray((0, 1), (8, 1)) is None
 
 
@@ -188,8 +178,6 @@ def test_nothing_is_found_where_there_is_nothing() -> None:
         (lambda w: w.query_ray((0, 0), (1, 1), mask=None), TypeError, "mask.*integer.*None"),
     ],
 )
-def test_a_question_that_makes_no_sense_is_refused(
-    call: Any, error: type[Exception], message: str
-) -> None:
+def test_an_invalid_query_is_refused(call: Any, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
         call(WORLD)

@@ -1,8 +1,7 @@
-"""Random worlds against a simulation without any cleverness, and the laws that hold for all.
+"""Random worlds compared with a brute-force simulation, and the laws that hold for all.
 
-The simulation knows no grid, no plans and no order of events: it asks every pair for its time of
-impact, flies all bodies to the first of these times, lets that pair bounce, and asks every pair
-again.
+The simulation has no grid, no plans and no order of events. It asks every pair for its time of
+impact, moves all bodies to the first of these times, bounces that pair, and repeats.
 """
 
 import math
@@ -22,10 +21,10 @@ from arkanoid.physics import (
     Rectangle,
     World,
     bounce,
-    contact,
     detect,
     time_of_impact,
 )
+from helpers.bodies import bodies_of, deepest_overlap
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -33,7 +32,7 @@ Rng = np.random.Generator
 
 
 def random_shape(rng: Rng, size: float) -> Collider:
-    """Return a shape of any bounded kind that reaches about as far as its size."""
+    """Return a shape of any bounded kind, with a radius of about the given size."""
     kind, angle = rng.integers(4), rng.uniform(0, math.tau)
     if kind == 0:
         return Particle(size)
@@ -47,7 +46,7 @@ def random_shape(rng: Rng, size: float) -> Collider:
 
 
 def scattered(rng: Rng, count: int, width: float, others: list[Body]) -> list[Body]:
-    """Return bodies that move, of all sizes, where they overlap neither each other nor others."""
+    """Return moving bodies of all sizes that overlap neither each other nor the others."""
     bodies: list[Body] = []
     while len(bodies) < count:
         size = 0.1 * 6 ** rng.uniform()
@@ -64,7 +63,7 @@ def scattered(rng: Rng, count: int, width: float, others: list[Body]) -> list[Bo
 
 
 def walls(width: float) -> list[Body]:
-    """Return four walls of three unbounded kinds about a room."""
+    """Return four walls of three unbounded kinds around a room."""
     return [
         Body(AxisAlignedHalfPlane("+x")),
         Body(HalfPlane((-1, 0.02), -width)),
@@ -74,7 +73,7 @@ def walls(width: float) -> list[Body]:
 
 
 def crowd(seed: int, width: float = 9.0, count: int = 14) -> list[Body]:
-    """Return a room with obstacles, a giant, a kinematic body, and many that move."""
+    """Return a room with obstacles, a giant, a kinematic body, and many dynamic bodies."""
     rng = np.random.default_rng(seed)
     fixed = walls(width)
     fixed.append(Body(Rectangle(6, 0.5, 0.1), (4, 7.5), (0, -0.3), mass=20))  # the giant
@@ -100,7 +99,7 @@ def brute_force(bodies: list[Body], duration: float) -> list[tuple[Any, ...]]:
             impact = time_of_impact(a, b, best)
             if impact is None or (pair is not None and impact.time >= best):
                 continue
-            # What has just bounced may still overlap, by rounding.
+            # Two that have just bounced may still overlap, by rounding.
             if impact.time > 0 or (a.velocity - b.velocity) @ impact.normal > 1e-12:
                 best, pair, normal = impact.time, (i, j), impact.normal
         for body in bodies:
@@ -110,16 +109,6 @@ def brute_force(bodies: list[Body], duration: float) -> list[tuple[Any, ...]]:
             return hits
         impulse = bounce(bodies[pair[0]], bodies[pair[1]], normal)
         hits.append((now, *pair, normal, impulse))
-
-
-def deepest(bodies: list[Body]) -> float:
-    """Return the depth of the deepest overlap of two bodies of which one would give way."""
-    overlaps = [contact(a, b) for a, b in combinations(bodies, 2) if a.mass or b.mass]
-    return max((overlap.depth for overlap in overlaps if overlap is not None), default=0.0)
-
-
-def all_bodies(world: World) -> list[Body]:
-    return [world.body(index) for index in range(len(world))]
 
 
 @settings(max_examples=25, deadline=None)
@@ -135,14 +124,14 @@ def test_the_hits_are_those_of_brute_force(seed: int, steps: int) -> None:
     np.testing.assert_allclose(hits["impulse"], [row[4] for row in expected], rtol=0, atol=1e-8)
     places = [body.position for body in bodies]
     np.testing.assert_allclose(world.positions, places, rtol=0, atol=1e-9)
-    assert deepest(all_bodies(world)) < 1e-9
+    assert deepest_overlap(bodies_of(world)) < 1e-9
 
 
 def test_the_giant_roams_and_the_grid_is_one() -> None:
-    """The comparison above is of use only if the broad phase does what it is for."""
+    """The comparison above is useful only if the broad phase has work to do."""
     world = World(crowd(1))
     assert len(world.step(1.5)) > 5
-    setup, _ = world.memory()
+    setup = world.built().setup
     assert setup.traits["roams"].sum() == 1
     assert setup.header.columns * setup.header.rows > 8
     assert setup.header.heads > 0
@@ -151,7 +140,7 @@ def test_the_giant_roams_and_the_grid_is_one() -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**9), st.sampled_from(["moved", "padded", "reversed"]))
-def test_neither_place_nor_grid_nor_numbering_matters(seed: int, change: str) -> None:
+def test_neither_position_nor_grid_nor_order_matters(seed: int, change: str) -> None:
     plain = World(crowd(seed))
     bodies = crowd(seed)
     number = len(bodies)
@@ -176,14 +165,14 @@ def test_neither_place_nor_grid_nor_numbering_matters(seed: int, change: str) ->
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_nothing_ever_overlaps_and_nobody_leaves(seed: int) -> None:
+def test_bodies_never_overlap_and_never_leave(seed: int) -> None:
     world = World(crowd(seed, width=14, count=60))
     total = 0
     for _ in range(12):
         total += len(world.step(0.5))
-        places = all_bodies(world)
+        places = bodies_of(world)
         del places[5]  # the kinematic body may squeeze others, and leaves through the wall
-        assert deepest(places) < 1e-9
+        assert deepest_overlap(places) < 1e-9
     assert total > 150
     assert world.positions[14:].min() > -0.5
     assert world.positions[14:].max() < 15
@@ -206,15 +195,15 @@ def test_energy_and_momentum_are_kept(seed: int) -> None:
     assert len(hits) > 60
     assert masses @ world.velocities == pytest.approx(momentum, abs=1e-12)
     assert masses @ (world.velocities**2).sum(axis=1) == pytest.approx(energy, rel=1e-12)
-    # And so the centre of mass goes straight on.
+    # So the centre of mass moves in a straight line.
     assert masses @ world.positions == pytest.approx(moment + 3.0 * momentum, abs=1e-11)
-    assert deepest(all_bodies(world)) < 1e-9
+    assert deepest_overlap(bodies_of(world)) < 1e-9
 
 
 def test_energy_is_lost_as_restitution_says() -> None:
-    """At each hit (1 - e^2) of the energy of the approach, in the frame of the centre of mass."""
+    """Each hit loses (1 - e^2) of the energy of the approach, seen from the centre of mass."""
     bodies = crowd(7, count=30)
-    del bodies[5]  # the kinematic body, which gives energy
+    del bodies[5]  # the kinematic body, which adds energy
     world = World(bodies)
     masses = np.array([body.mass or 0.0 for body in bodies])
     before = masses @ (world.velocities**2).sum(axis=1) / 2

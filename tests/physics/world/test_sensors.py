@@ -1,4 +1,4 @@
-"""Sensors: who enters, who leaves, at which exact time, and that nobody's course changes."""
+"""Sensors: which bodies enter and leave, at which exact time; no motion changes."""
 
 import math
 from typing import Any
@@ -23,11 +23,11 @@ from arkanoid.physics import (
     detect,
     time_of_impact,
 )
+from helpers.bodies import DISC, OPEN_SHAPE
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 SQUARE = AxisAlignedRectangle(2, 2)
-BALL = Particle(0.5)
 
 ZONES: tuple[Collider, ...] = (
     Particle(1.2),
@@ -36,14 +36,14 @@ ZONES: tuple[Collider, ...] = (
     SQUARE,
     Rectangle(2, 1, 0.5),
     Convex([(0, 0), (2, 0), (1, 1.5)]),
-    Convex([(1, 1), (-1, 1), (-1, 0), (1, 0)], [3], 0.25),
+    OPEN_SHAPE,
 )
 
-GUESTS = (BALL, Particle(0), Rectangle(0.5, 0.7, 1), Convex([(0, 0), (1, 0), (0, 1)]))
+GUESTS = (DISC, Particle(0), Rectangle(0.5, 0.7, 1), Convex([(0, 0), (1, 0), (0, 1)]))
 
 
 def with_sensor(collider: Collider, *bodies: Body, **motion: Any) -> World:
-    """Return a world of a sensor, the first body, and other bodies."""
+    """Return a world with a sensor as its first body, and other bodies."""
     world = World()
     world.add(Body(collider, **motion), sensor=True)
     for body in bodies:
@@ -52,7 +52,7 @@ def with_sensor(collider: Collider, *bodies: Body, **motion: Any) -> World:
 
 
 def run(world: World, duration: float, dt: float) -> Any:
-    """Return all that happens in a time, step by step."""
+    """Return all events within a duration, step by step."""
     return np.concatenate([world.step(dt) for _ in range(round(duration / dt))])
 
 
@@ -65,7 +65,7 @@ def story(hits: Any) -> list[tuple[int, int, int]]:
 
 @pytest.mark.parametrize("dt", [10.0, 1.25, 0.25, 0.01])
 def test_a_passage_is_two_events(dt: float) -> None:
-    world = with_sensor(SQUARE, Body(BALL, (-5, 0), (2, 0), mass=1))
+    world = with_sensor(SQUARE, Body(DISC, (-5, 0), (2, 0), mass=1))
     first, last = run(world, 10, dt)
     assert (first["kind"], last["kind"]) == (BEGIN, END)
     assert (first["time"], last["time"]) == pytest.approx((1.75, 3.25), rel=1e-13)
@@ -97,7 +97,7 @@ def test_a_disc_is_crossed_along_a_chord(
         return
     chord = math.sqrt(half**2 - miss**2)
     assert hits["kind"].tolist() == [BEGIN, END]
-    # A grazing chord is as uncertain as the root of the miss.
+    # The uncertainty of a grazing chord is the square root of that of the distance.
     error = 1e-14 * max(1.0, 5 / chord)
     assert hits["time"] * speed == pytest.approx([5 - chord, 5 + chord], abs=5 * error)
     for hit, sign in zip(hits, (-1, 1), strict=True):
@@ -114,7 +114,7 @@ def test_a_disc_is_crossed_along_a_chord(
     st.floats(0, 2 * math.pi),
     st.sampled_from([100.0, 10.0, 2.5]),
 )
-def test_leaving_is_entering_in_a_film_that_runs_backwards(
+def test_leaving_is_entering_in_reversed_time(
     zone: Collider, shape: Collider, aim: tuple[float, float], angle: float, dt: float
 ) -> None:
     velocity = np.array([math.cos(angle), math.sin(angle)])
@@ -122,9 +122,9 @@ def test_leaving_is_entering_in_a_film_that_runs_backwards(
     there = time_of_impact(Body(zone), Body(shape, start, velocity), 100)
     back = time_of_impact(Body(zone), Body(shape, start + 100 * velocity, -velocity), 100)
     expected = [] if there is None else [(BEGIN, there.time)]
-    # If it ends inside, the film begins inside.
+    # If the motion ends inside, the reversed one begins inside.
     expected += [] if back is None or back.time == 0 else [(END, 100 - back.time)]
-    # What grazes is seen from one side only, or no deeper than rounding.
+    # A grazing passage is seen from one side only, or is no deeper than rounding.
     assume((there is None) == (back is None))
     if there is not None and back is not None:
         half_way = start + (there.time + 100 - back.time) / 2 * velocity
@@ -137,18 +137,18 @@ def test_leaving_is_entering_in_a_film_that_runs_backwards(
 
 
 def test_bounces_in_between_do_not_count() -> None:
-    """Across a strip, to and fro between floor and ceiling, and back from the far wall."""
+    """A ball crosses a strip, bouncing between floor and ceiling, and returns from the far wall."""
     strip = Convex.from_half_planes(AxisAlignedHalfPlane("+x", 3), AxisAlignedHalfPlane("-x", -1))
     world = with_sensor(strip, Body(AxisAlignedHalfPlane("+y")))
     world.add(Body(AxisAlignedHalfPlane("-y"), (0, 2)))
     world.add(Body(AxisAlignedHalfPlane("+x"), (-4, 0)))
     world.add(Body(AxisAlignedHalfPlane("-x"), (6, 0)))
-    ball = world.add(Body(BALL, (0, 0.7), (1, 7), mass=1))
+    ball = world.add(Body(DISC, (0, 0.7), (1, 7), mass=1))
     hits = world.step(100.0)
     assert (hits["kind"] == HIT).sum() > 600
     assert (np.diff(hits["time"]) >= 0).all()
     events = hits[hits["kind"] != HIT]
-    # The room for its middle is 9 wide: it is back after 18, and it is seen at 0.5 and at 3.5.
+    # The room for its centre is 9 wide: it is back after 18, and enters at 0.5 and at 3.5.
     expected = [
         (18 * lap + time, kind)
         for lap in range(6)
@@ -160,32 +160,32 @@ def test_bounces_in_between_do_not_count() -> None:
     assert set(events["b"]) == {ball}
 
 
-def test_a_ball_turned_round_inside_leaves_where_it_came_from() -> None:
-    world = with_sensor(SQUARE, Body(BALL, (-4, 0), (1, 0), mass=1))
+def test_a_ball_that_bounces_inside_leaves_where_it_entered() -> None:
+    world = with_sensor(SQUARE, Body(DISC, (-4, 0), (1, 0), mass=1))
     world.add(Body(AxisAlignedHalfPlane("-x"), (1, 0)))
     hits = world.step(20.0)
     assert story(hits) == [(BEGIN, 0, 1), (HIT, 1, 2), (END, 0, 1)]
     assert hits["time"].tolist() == [2.5, 4.5, 6.5]
 
 
-# Who is noticed.
+# Which bodies a sensor notices.
 
 
-def test_sensors_do_not_notice_sensors_nor_static_bodies() -> None:
+def test_sensors_ignore_sensors_and_static_bodies() -> None:
     world = with_sensor(SQUARE, Body(SQUARE, (1, 0)))
     world.add(Body(SQUARE, (5, 0), (-1, 0)), sensor=True)
     hits = world.step(10.0)
-    # The one that moves notices the static body, and no sensor the other one.
+    # The moving sensor notices the static body; no sensor notices the other one.
     assert story(hits) == [(BEGIN, 1, 2), (END, 1, 2)]
     assert hits["time"].tolist() == [2, 6]
 
 
-def test_kinematic_bodies_are_noticed_and_so_are_bodies_by_kinematic_sensors() -> None:
+def test_sensors_notice_kinematic_bodies_and_may_be_kinematic() -> None:
     world = with_sensor(SQUARE, Body(SQUARE, (0, 7)), velocity=(0, 1))
-    world.add(Body(BALL, (5, 4), (-1, 0)))
-    world.add(Body(BALL, (0, -4), (0, 3), mass=1), mask=0)
+    world.add(Body(DISC, (5, 4), (-1, 0)))
+    world.add(Body(DISC, (0, -4), (0, 3), mass=1), mask=0)
     hits = world.step(20.0)
-    # Seen from the sensor the disc goes down a diagonal, in at the right and out at the bottom.
+    # Seen from the sensor, the disc moves diagonally, in at the right and out at the bottom.
     assert story(hits) == [(BEGIN, 0, 2), (BEGIN, 0, 1), (END, 0, 2), (END, 0, 1)]
     assert hits["time"] == pytest.approx([3.5, 5, 5.5, 9], rel=1e-15)
     assert hits["normal"].tolist() == [[1, 0], [0, 1], [0, -1], [0, -1]]
@@ -193,9 +193,9 @@ def test_kinematic_bodies_are_noticed_and_so_are_bodies_by_kinematic_sensors() -
 
 
 def test_one_entry_where_sensor_and_body_both_move() -> None:
-    """Both had planned the same entry, after a bounce on the way, and it was reported twice."""
+    """Both had planned the same entry, after a bounce, and it was reported twice."""
     world = with_sensor(
-        AxisAlignedRectangle(2, 20), Body(BALL, (5, 2), (-1, -1), mass=1), velocity=(0.1, 0)
+        AxisAlignedRectangle(2, 20), Body(DISC, (5, 2), (-1, -1), mass=1), velocity=(0.1, 0)
     )
     world.add(Body(AxisAlignedHalfPlane("+y")), mask=2)
     floor = world.add(Body(AxisAlignedRectangle(4, 1), (4, -0.5)))
@@ -205,33 +205,33 @@ def test_one_entry_where_sensor_and_body_both_move() -> None:
     assert ball["time"] == pytest.approx([3.5 / 1.1, 6.5 / 1.1], rel=1e-14)
 
 
-def test_masks_count() -> None:
+def test_masks_decide_what_a_sensor_notices() -> None:
     for category, mask, noticed in ((1, 2, False), (2, 1, False), (3, 2, True), (2, 3, True)):
         world = World()
         world.add(Body(SQUARE), sensor=True, category=2, mask=2)
-        world.add(Body(BALL, (-3, 0), (1, 0), mass=1), category=category, mask=mask)
+        world.add(Body(DISC, (-3, 0), (1, 0), mass=1), category=category, mask=mask)
         assert len(world.step(10.0)) == 2 * noticed
 
 
-def test_what_only_touches_does_not_enter() -> None:
-    slides = with_sensor(SQUARE, Body(BALL, (-5, 1.5), (1, 0), mass=1))
+def test_touching_is_not_entering() -> None:
+    slides = with_sensor(SQUARE, Body(DISC, (-5, 1.5), (1, 0), mass=1))
     assert len(slides.step(20.0)) == 0
-    # Corner past corner, along a diagonal.
+    # One corner passes another, along a diagonal.
     grazes = with_sensor(SQUARE, Body(AxisAlignedRectangle(1, 1), (-3.5, -0.5), (1, 1), mass=1))
     assert len(grazes.step(20.0)) == 0
     turned = World([Body(AxisAlignedHalfPlane("+x"), (1, 0))])
     turned.add(Body(SQUARE), sensor=True)
-    turned.add(Body(BALL, (4, 0), (-1, 0), mass=1))
+    turned.add(Body(DISC, (4, 0), (-1, 0), mass=1))
     assert story(turned.step(20.0)) == [(HIT, 0, 2)]
-    rests = with_sensor(SQUARE, Body(BALL, (1.5, 0), mass=1))
-    assert len(rests.step(20.0)) == 0
+    stays = with_sensor(SQUARE, Body(DISC, (1.5, 0), mass=1))
+    assert len(stays.step(20.0)) == 0
 
 
-def test_several_sensors_in_the_order_of_time() -> None:
+def test_events_of_several_sensors_are_in_the_order_of_time() -> None:
     world = World()
     for width in (6, 2, 4):
         world.add(Body(AxisAlignedRectangle(width, 2)), sensor=True)
-    world.add(Body(BALL, (-6, 0), (1, 0), mass=1))
+    world.add(Body(DISC, (-6, 0), (1, 0), mass=1))
     hits = world.step(20.0)
     opens = [(BEGIN, 0, 3), (BEGIN, 2, 3), (BEGIN, 1, 3)]
     closes = [(END, 1, 3), (END, 2, 3), (END, 0, 3)]
@@ -239,19 +239,19 @@ def test_several_sensors_in_the_order_of_time() -> None:
     assert hits["time"].tolist() == [2.5, 3.5, 4.5, 7.5, 8.5, 9.5]
 
 
-# Put somewhere.
+# Placed bodies.
 
 
 @pytest.mark.parametrize("dt", [0.0, 1.0])
-def test_what_is_put_inside_enters_as_the_step_begins_and_once(dt: float) -> None:
-    world = with_sensor(SQUARE, Body(BALL, (0.3, 0), (0.1, 0), mass=1))
+def test_a_body_put_inside_enters_once_as_the_step_begins(dt: float) -> None:
+    world = with_sensor(SQUARE, Body(DISC, (0.3, 0), (0.1, 0), mass=1))
     (hit,) = world.step(dt)
     assert (hit["kind"], hit["time"]) == (BEGIN, 0)
     assert len(world.step(dt)) == 0
 
 
-def test_what_is_put_elsewhere_is_in_no_sensor_yet() -> None:
-    world = with_sensor(SQUARE, Body(BALL, (0, 0), (1, 0), mass=1))
+def test_a_placed_body_is_in_no_sensor_until_a_step() -> None:
+    world = with_sensor(SQUARE, Body(DISC, (0, 0), (1, 0), mass=1))
     assert len(world.step(0.25)) == 1
     world.place(1, (9, 9))
     assert len(world.step(0.25)) == 0
@@ -265,12 +265,12 @@ def test_what_is_put_elsewhere_is_in_no_sensor_yet() -> None:
 
 
 def test_a_ball_that_is_served_again_is_noticed_again() -> None:
-    """It was still inside, for the sensor, after its place was written into the batch's state.
+    """The sensor still counted it as inside after its position was written into the batch's state.
 
-    Nothing was said when it came in anew. Or, if it had been put down beyond the sensor, that it
-    had left long before the step: when it would have, had it flown to where it was put.
+    There was no event when it entered again. If it was placed beyond the sensor, it was reported to
+    have left long before the step: when it would have left, had it moved there by itself.
     """
-    batch = WorldBatch(with_sensor(SQUARE, Body(BALL, (-2, 0), (1, 0), mass=1)), 3)
+    batch = WorldBatch(with_sensor(SQUARE, Body(DISC, (-2, 0), (1, 0), mass=1)), 3)
     batch.step(2.0)
     batch.positions[1, 0] = (-9, 0)
     batch.positions[2, 0] = (90, 0)
@@ -280,9 +280,9 @@ def test_a_ball_that_is_served_again_is_noticed_again() -> None:
     assert hits["time"] == pytest.approx([3.5, 9.5])
 
 
-def test_what_is_relaxed_out_of_a_sensor_leaves_it_as_the_step_begins() -> None:
-    """A time before the step was told: when it would have left, had it flown to where it is."""
-    world = with_sensor(SQUARE, Body(BALL, (0, 0), (1, 0), mass=1))
+def test_a_body_relaxed_out_of_a_sensor_leaves_as_the_step_begins() -> None:
+    """The time was before the step: when it would have left, had it moved there by itself."""
+    world = with_sensor(SQUARE, Body(DISC, (0, 0), (1, 0), mass=1))
     world.step(1.0)
     world.add(Body(AxisAlignedRectangle(4, 4), (2, 0)))
     world.place(2, (0.9, 0))
@@ -292,7 +292,7 @@ def test_what_is_relaxed_out_of_a_sensor_leaves_it_as_the_step_begins() -> None:
     assert (left["kind"], left["time"]) == (END, 1.0)
 
 
-# Many, and at random.
+# Many sensors, and random ones.
 
 
 @pytest.mark.parametrize("continuous", [True, False])
@@ -319,7 +319,7 @@ def test_more_events_than_there_was_room_for(continuous: bool) -> None:
 
 
 def random_scene(seed: int, has_sensors: bool) -> tuple[World, list[int], list[int]]:
-    """Return a room of balls and of zones, some of which move; and the indices of both."""
+    """Return a room with balls and zones, some of which move, and the indices of both."""
     rng = np.random.default_rng(seed)
     world = World(
         Body(AxisAlignedHalfPlane(direction), place)
@@ -361,13 +361,13 @@ def test_events_agree_with_detection_at_a_thousand_moments(seed: int) -> None:
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 10**6))
-def test_sensors_change_nobodys_course(seed: int) -> None:
+def test_sensors_change_no_motion(seed: int) -> None:
     sensed, _, _ = random_scene(seed, has_sensors=True)
     alone, _, _ = random_scene(seed, has_sensors=False)
     hits, plain = sensed.step(3.0), alone.step(3.0)
     hits = hits[hits["kind"] == HIT]
     assert hits[["a", "b"]].tolist() == plain[["a", "b"]].tolist()
-    # Where it is when it enters is rounded, once more.
+    # The position where it enters is rounded once more.
     for ours, theirs in (
         (hits["time"], plain["time"]),
         (sensed.positions, alone.positions),

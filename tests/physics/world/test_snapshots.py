@@ -1,4 +1,4 @@
-"""Worlds as data: what goes on from a snapshot, a pickle or a copy is the same to the last bit."""
+"""Worlds as data: from a snapshot, a pickle or a copy, a world continues bit for bit."""
 
 import copy
 import pickle
@@ -13,48 +13,38 @@ from arkanoid.physics import (
     AxisAlignedHalfPlane,
     AxisAlignedRectangle,
     Body,
-    Collider,
-    Convex,
     Particle,
-    Rectangle,
     World,
     WorldBatch,
 )
+from helpers.bodies import SMALL_SHAPES, room
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-SHAPES: tuple[Collider, ...] = (
-    Particle(0.3),
-    AxisAlignedRectangle(0.6, 0.4),
-    Rectangle(0.5, 0.3, 0.7),
-    Convex([(-0.3, -0.2), (0.4, 0), (-0.2, 0.4)]),
-)
-
 
 def make_world(seed: int, continuous: bool = True) -> World:
-    """Return a room of twelve that move, a kinematic body, and sensors, of which one moves."""
+    """Return a room with twelve dynamic bodies, a kinematic one, and two sensors; one moves."""
     rng = np.random.default_rng(seed)
     world = World(
         [
-            Body(AxisAlignedHalfPlane("+x")),
-            Body(AxisAlignedHalfPlane("-x", -6)),
-            Body(AxisAlignedHalfPlane("+y")),
-            Body(AxisAlignedHalfPlane("-y", -5)),
+            *room(6, 5),
             Body(AxisAlignedRectangle(1, 0.25), (3, 2.4), (0.1, 0)),
         ],
         continuous=continuous,
     )
     for index in range(12):
         place = (0.8 + index % 4 * 1.4, 0.6 + index // 4 * 1.5)
-        world.add(Body(SHAPES[index % 4], place, rng.normal(size=2) * 2, float(1 + index % 3), 0.9))
+        world.add(
+            Body(SMALL_SHAPES[index % 4], place, rng.normal(size=2) * 2, float(1 + index % 3), 0.9)
+        )
     world.add(Body(AxisAlignedRectangle(2, 2), (2, 2)), sensor=True)
     world.add(Body(Particle(1), (4, 3), (-0.1, 0)), sensor=True)
     world.set_restitution(5, 6, 0.5)
     return world
 
 
-def go_on(world: World, steps: int = 5) -> list[bytes]:
-    """Return all bits of some steps."""
+def next_bits(world: World, steps: int = 5) -> list[bytes]:
+    """Return all bits of the next steps."""
     bits = []
     for _ in range(steps):
         hits = world.step(0.25)
@@ -67,7 +57,7 @@ seeds = st.integers(0, 10**6)
 
 @settings(max_examples=25, deadline=None)
 @given(seeds, st.integers(0, 12), st.integers(0, 12), st.booleans())
-def test_a_restored_world_goes_on_to_the_bit(
+def test_a_restored_world_continues_bit_for_bit(
     seed: int, before: int, between: int, continuous: bool
 ) -> None:
     world, fresh = make_world(seed, continuous), make_world(seed, continuous)
@@ -75,16 +65,16 @@ def test_a_restored_world_goes_on_to_the_bit(
         world.step(0.25)
     kept = world.snapshot()
     assert world.snapshot() == kept
-    expected = go_on(world)
+    expected = next_bits(world)
     for _ in range(between):
         world.step(0.3)
     for other in (world, fresh):
         other.restore(kept)
         assert other.snapshot() == kept
-        assert go_on(other) == expected
+        assert next_bits(other) == expected
 
 
-def test_snapshots_hold_who_is_inside() -> None:
+def test_snapshots_hold_which_bodies_are_inside_sensors() -> None:
     world = World()
     world.add(Body(AxisAlignedRectangle(2, 2)), sensor=True)
     world.add(Body(Particle(0.5), (-2, 0), (1, 0), mass=1))
@@ -108,15 +98,15 @@ def test_a_snapshot_after_many_hits_in_one_step() -> None:
     assert world.step(1.0).tobytes() == first.tobytes()
 
 
-def test_restoring_undoes_places_and_time() -> None:
+def test_restoring_undoes_positions_and_time() -> None:
     world = make_world(1)
     world.step(0.5)
-    kept, expected = world.snapshot(), go_on(world)
+    kept, expected = world.snapshot(), next_bits(world)
     world.restore(kept)
     world.place(7, (3, 3), (9, 9))
     world.restore(kept)
     assert world.time == 0.5
-    assert go_on(world) == expected
+    assert next_bits(world) == expected
 
 
 # Refusals.
@@ -126,7 +116,7 @@ def changed(content: bytes, at: int) -> bytes:
     return content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :]
 
 
-def test_a_snapshot_that_is_none_is_refused() -> None:
+def test_a_corrupt_snapshot_is_refused() -> None:
     world = make_world(1)
     world.step(0.5)
     kept = world.snapshot()
@@ -218,7 +208,7 @@ def pickled(world: World) -> World:
 
 @settings(max_examples=20, deadline=None)
 @given(seeds, st.integers(0, 8), st.sampled_from([pickled, copy.deepcopy, copy.copy]))
-def test_a_copy_goes_on_to_the_bit_and_leaves_the_original_alone(
+def test_a_copy_continues_bit_for_bit_and_leaves_the_original_alone(
     seed: int, steps: int, duplicate: Callable[[World], World]
 ) -> None:
     world, control = make_world(seed), make_world(seed)
@@ -227,9 +217,9 @@ def test_a_copy_goes_on_to_the_bit_and_leaves_the_original_alone(
             each.step(0.25)
     twin = duplicate(world)
     assert twin.snapshot() == world.snapshot()
-    expected = go_on(control)
-    assert go_on(twin) == expected
-    assert go_on(world) == expected
+    expected = next_bits(control)
+    assert next_bits(twin) == expected
+    assert next_bits(world) == expected
 
 
 @pytest.mark.parametrize("duplicate", [pickled, copy.deepcopy, copy.copy])
@@ -246,7 +236,7 @@ def test_a_copy_is_edited_alone(duplicate: Callable[[World], World], is_stepped:
     twin.add(Body(Particle(0.25), (1, 1), (1, 0), mass=1))
     twin.step(0.5)
     assert len(world) == len(control)
-    assert go_on(world) == go_on(control)
+    assert next_bits(world) == next_bits(control)
 
 
 def test_a_copy_of_an_edited_world_holds_the_edits() -> None:
@@ -256,4 +246,4 @@ def test_a_copy_of_an_edited_world_holds_the_edits() -> None:
     world.place(0, (-0.5, 0))
     twin = pickled(world)
     assert twin.time == world.time == 0.75
-    assert go_on(twin) == go_on(world)
+    assert next_bits(twin) == next_bits(world)

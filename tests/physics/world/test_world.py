@@ -1,6 +1,5 @@
-"""The world as an object: what it takes and gives, and how it is edited."""
+"""The world as an object: what goes in, what comes out, and how it is edited."""
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -13,39 +12,23 @@ from arkanoid.physics import (
     AxisAlignedHalfPlane,
     AxisAlignedRectangle,
     Body,
-    Collider,
-    Convex,
     Hit,
     Particle,
-    Rectangle,
     World,
 )
+from helpers.bodies import DISC, FLOOR, SMALL_SHAPES, Fog, room
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-FLOOR = Body(AxisAlignedHalfPlane("+y"))
-DISC = Particle(0.5)
 
 
 def random_world(seed: int, skip: int = -1) -> World:
     """Return a crowded room with sensors, masks and overrides, perhaps without one of its bodies.
 
-    Built up from nothing, in one go: what is removed later must leave the same world.
+    It is built in one go; a world from which the body is removed later must be the same.
     """
     rng = np.random.default_rng(seed)
-    shapes: tuple[Collider, ...] = (
-        Particle(0.3),
-        Particle(0.2),
-        AxisAlignedRectangle(0.6, 0.4),
-        Rectangle(0.5, 0.3, 0.7),
-        Convex([(-0.3, -0.2), (0.4, 0), (-0.2, 0.4)]),
-    )
-    rows: list[tuple[Body, dict[str, Any]]] = [
-        (Body(AxisAlignedHalfPlane("+x")), {}),
-        (Body(AxisAlignedHalfPlane("-x", -6)), {}),
-        (Body(AxisAlignedHalfPlane("+y")), {}),
-        (Body(AxisAlignedHalfPlane("-y", -4)), {}),
-    ]
+    shapes = (SMALL_SHAPES[0], Particle(0.2), *SMALL_SHAPES[1:])
+    rows: list[tuple[Body, dict[str, Any]]] = [(wall, {}) for wall in room(6, 4)]
     for index in range(15):
         place = (0.8 + index % 5 * 1.1, 0.8 + index // 5 * 1.1)
         solid = index % 7 != 3
@@ -64,11 +47,11 @@ def random_world(seed: int, skip: int = -1) -> World:
 
 
 def same(first: Any, second: Any) -> bool:
-    """Tell whether two arrays have the same bits."""
+    """Return whether two arrays have the same bits."""
     return bool(first.tobytes() == second.tobytes())
 
 
-# Bodies, in and out.
+# Adding bodies and getting them back.
 
 
 def test_bodies_are_numbered_as_they_are_added() -> None:
@@ -102,15 +85,7 @@ def test_the_world_takes_copies() -> None:
     assert world.positions.tolist() == [[2, 0]]
 
 
-@dataclass
-class Fog:
-    """Someone's own class with nothing but a shape and a place."""
-
-    collider: Collider
-    position: Any
-
-
-def test_ones_own_classes_are_bodies() -> None:
+def test_users_classes_are_bodies() -> None:
     world = World([Fog(AxisAlignedHalfPlane("-x"), [3, 0]), Body(DISC, (0, 0), (1, 0), mass=1)])
     (hit,) = world.step(3.0)
     assert hit["time"] == 2.5
@@ -119,10 +94,10 @@ def test_ones_own_classes_are_bodies() -> None:
 
 
 @given(st.floats(1e-300, 1e300), st.floats(0, 10), st.floats(-10, 10), st.booleans())
-def test_a_body_comes_back_as_it_was_put_in(
+def test_a_body_comes_back_as_it_was_added(
     mass: float, restitution: float, coordinate: float, is_static: bool
 ) -> None:
-    """The mass came back as 1 / (1 / mass): 49 did, 41 did not."""
+    """The mass came back as 1 / (1 / mass), which is right for 49 and wrong for 41."""
     given_mass = None if is_static else mass
     body = Body(DISC, (coordinate, 1), (2, coordinate), given_mass, restitution)
     back = World([body]).body(0)
@@ -157,7 +132,7 @@ def test_positions_are_copies_that_cannot_be_written_to() -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**6), st.integers(4, 18))
-def test_a_world_without_a_body_is_one_that_never_had_it(seed: int, gone: int) -> None:
+def test_a_removed_body_leaves_no_trace(seed: int, gone: int) -> None:
     """Indices, overrides, sensors and masks all follow."""
     edited, never = random_world(seed), random_world(seed, skip=gone)
     edited.remove(gone)
@@ -167,7 +142,7 @@ def test_a_world_without_a_body_is_one_that_never_had_it(seed: int, gone: int) -
     assert same(edited.velocities, never.velocities)
 
 
-def test_who_is_inside_follows_a_removal() -> None:
+def test_bodies_inside_sensors_are_renumbered_after_a_removal() -> None:
     world = World([FLOOR])
     sensor = world.add(Body(AxisAlignedRectangle(2, 2), (0, 5)), sensor=True)
     ball = world.add(Body(Particle(0.1), (0, 5), (1, 0), mass=1))
@@ -205,10 +180,10 @@ def test_editing_keeps_time_and_motion() -> None:
     assert world.time == float(Fraction(0.1) * 8)
 
 
-# Places.
+# Placing bodies.
 
 
-def test_what_moves_can_be_put_elsewhere() -> None:
+def test_a_moving_body_can_be_placed() -> None:
     world = World([FLOOR, Body(DISC, (0, 3), (0, -1), mass=1)])
     world.step(1.0)
     world.place(1, (2, 10))
@@ -222,7 +197,7 @@ def test_what_moves_can_be_put_elsewhere() -> None:
     assert world.positions[1] == pytest.approx([2, 1], abs=1e-14)
 
 
-def test_what_is_static_can_be_put_elsewhere() -> None:
+def test_a_static_body_can_be_placed() -> None:
     world = World([FLOOR, Body(DISC, (0, 3), (0, -1), mass=1)])
     assert len(world.step(1.0)) == 0
     world.place(0, (0, -5))
@@ -301,7 +276,7 @@ def test_hits_belong_to_the_caller() -> None:
     assert first[0]["kind"] == HIT
 
 
-# Restitution of a pair.
+# The restitution of a pair.
 
 
 def test_a_pair_has_its_own_restitution_until_it_is_taken_back() -> None:

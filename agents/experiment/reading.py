@@ -1,0 +1,241 @@
+"""Settings from TOML and from the command line: read, checked by pydantic, explained, written.
+
+A schema is a pydantic dataclass. Its fields are settings, tables of settings (dataclasses of their
+own), or `dict[str, Any]`: a free table, whose keys are checked elsewhere.
+"""
+
+import difflib
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any, TypeVar
+
+import tomli_w
+from pydantic import TypeAdapter, ValidationError
+
+from ... import configs
+from .errors import SettingsError
+
+T = TypeVar("T")
+
+COMMAND_LINE = "command line"
+# How the names of packaged experiments end.
+CONFIG = ".toml"
+
+_KINDS = {
+    "integer": ("an integer", "a list of integers"),
+    "number": ("a number", "a list of numbers"),
+    "string": ("a text", "a list of texts"),
+    "boolean": ("true or false", "a list of truth values"),
+}
+# JSON Schema's words, and ours.
+_BOUNDS = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most"}
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a user is told about a setting.
+
+    Attributes:
+        key: its dotted path.
+        expected: what a value must be, in words.
+        meaning: what the value decides.
+        default: the value if none is given.
+        is_text: whether a command line's words are the value, and not TOML.
+        is_free: whether this is a free table.
+    """
+
+    key: str
+    expected: str
+    meaning: str
+    default: Any
+    is_text: bool
+    is_free: bool
+
+
+def describe_settings(schema: type[Any]) -> dict[str, Setting]:
+    """Return every setting of a schema by its dotted key."""
+    document = TypeAdapter(schema).json_schema()
+    found = {}
+    for name, entry in document["properties"].items():
+        if "$ref" not in entry:
+            found[name] = _setting(name, entry)
+            continue
+        table = document["$defs"][entry["$ref"].rpartition("/")[2]]
+        for inner, inner_entry in table["properties"].items():
+            found[f"{name}.{inner}"] = _setting(f"{name}.{inner}", inner_entry)
+    return found
+
+
+def _setting(key: str, entry: Mapping[str, Any]) -> Setting:
+    kind = entry["type"]
+    expected = "a table" if kind == "object" else _expected(entry)
+    default = entry.get("default", {})
+    return Setting(key, expected, entry["description"], default, kind == "string", kind == "object")
+
+
+def _expected(entry: Mapping[str, Any]) -> str:
+    """Return what a part of a JSON schema asks for, in words."""
+    is_list = entry["type"] == "array"
+    value = entry["items"] if is_list else entry
+    rules = [f"{words} {value[bound]:.10g}" for bound, words in _BOUNDS.items() if bound in value]
+    if "enum" in value:
+        rules.append("one of " + ", ".join(map(repr, value["enum"])))
+    kind = _KINDS[value["type"]][is_list]
+    return f"{kind}{', each ' if is_list else ', '}{' and '.join(rules)}" if rules else kind
+
+
+def read_settings(
+    schema: type[T],
+    table: Mapping[str, Any],
+    source: str,
+    overrides: Sequence[tuple[str, str]] = (),
+) -> T:
+    """Return the settings of a table, changed by overrides ``(dotted key, text)``.
+
+    ``source`` names the table's origin in errors. Raises `SettingsError`, which names the place,
+    the key, what is expected and, of an unknown key, the nearest known one.
+    """
+    known = describe_settings(schema)
+    values = {
+        key: dict(value) if isinstance(value, dict) else value for key, value in table.items()
+    }
+    for key, text in overrides:
+        setting = _find(known, key, COMMAND_LINE)
+        _set(values, key, text if setting.is_text else parse_toml_value(text))
+    try:
+        return TypeAdapter(schema).validate_python(values)
+    except ValidationError as error:
+        changed = {key for key, _ in overrides}
+        raise _explained(error.errors()[0], known, values, source, changed) from None
+
+
+def check_value(schema: type[Any], key: str, value: Any, source: str) -> None:
+    """Raise `SettingsError` if there is no such setting, or if it cannot take the value.
+
+    Rules that tie several settings together do not count.
+    """
+    known = describe_settings(schema)
+    _find(known, key, source)
+    values: dict[str, Any] = {}
+    _set(values, key, value)
+    try:
+        TypeAdapter(schema).validate_python(values)
+    except ValidationError as error:
+        for problem in error.errors():
+            if problem["type"] != "value_error":
+                raise _explained(problem, known, values, source, set()) from None
+
+
+def to_toml(settings: Any) -> str:
+    """Return settings as a TOML document that `read_settings` reads back to equal ones."""
+    return tomli_w.dumps(asdict(settings))
+
+
+def parse_toml_value(text: str) -> Any:
+    """Return what the text means in TOML, or the text itself if it means nothing there."""
+    try:
+        table = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    # A line break in the text could smuggle in more than the one value.
+    return table["value"] if set(table) == {"value"} else text
+
+
+def read_toml(config: str, suffix: str = CONFIG) -> tuple[str, dict[str, Any]]:
+    """Return the name, for messages, and the content of a TOML file or of a packaged one's name.
+
+    Raises `SettingsError` if it is missing or is not TOML.
+    """
+    source, text = _read_config(config, suffix)
+    try:
+        return source, tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SettingsError(f"{source}: not a TOML file: {error}") from None
+
+
+def packaged_configs(suffix: str = CONFIG) -> list[str]:
+    """Return the names of the configs, or of other TOML files, that come with the package."""
+    files = (file.name for file in resources.files(configs).iterdir())
+    names = (name.removesuffix(suffix) for name in files if name.endswith(suffix))
+    # A further dot in the name marks another kind of file.
+    return sorted(name for name in names if "." not in name)
+
+
+def _read_config(config: str, suffix: str) -> tuple[str, str]:
+    """Return the name of a config for messages, and its text."""
+    path = Path(config)
+    try:
+        if config in packaged_configs(suffix) and not path.is_file():
+            file = resources.files(configs) / f"{config}{suffix}"
+            return f"config {config!r}", file.read_text(encoding="utf-8")
+        return config, path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise SettingsError(f"{config}: not a TOML file: {error}") from None
+    except OSError as error:
+        names = ", ".join(packaged_configs(suffix))
+        raise SettingsError(
+            f"{config}: cannot be read ({error.strerror}); give the path of a TOML file or the "
+            f"name of a packaged one: {names}"
+        ) from None
+
+
+def _find(known: Mapping[str, Setting], key: str, source: str) -> Setting:
+    """Return the setting of a key, or the free table that it belongs to."""
+    table = known.get(key.partition(".")[0])
+    if table is not None and table.is_free and table.key != key:
+        return table
+    if key not in known:
+        raise _unknown(key, known, source)
+    return known[key]
+
+
+def _set(values: dict[str, Any], key: str, value: Any) -> None:
+    table, _, name = key.partition(".")
+    if not name:
+        values[key] = value
+    elif isinstance(values.setdefault(table, {}), dict):
+        values[table][name] = value
+
+
+def _explained(
+    problem: Mapping[str, Any],
+    known: Mapping[str, Setting],
+    values: Mapping[str, Any],
+    source: str,
+    changed: set[str],
+) -> SettingsError:
+    """Return a problem that pydantic found in our words; ``changed`` are overridden keys."""
+    if problem["type"] == "value_error":
+        # A rule that ties several settings together: the file breaks it, or what changed it.
+        origin = f"{source} and {COMMAND_LINE}" if changed else source
+        return SettingsError(f"{origin}: {problem['ctx']['error']}")
+    table, *names = map(str, problem["loc"])
+    # A place inside a list is not a key.
+    key = f"{table}.{names[0]}" if names and table not in known else table
+    value = values[table] if key == table else values[table][names[0]]
+    origin = COMMAND_LINE if key in changed else source
+    if problem["type"] == "unexpected_keyword_argument":
+        return _unknown(key, known, origin)
+    expected = known[key].expected if key in known else "a table"
+    return SettingsError(f"{origin}: {key!r} must be {expected}, not {_shown(value)}")
+
+
+def _unknown(key: str, known: Mapping[str, Setting], source: str) -> SettingsError:
+    # The last part is compared, too: `learning_rate` alone means `ppo.learning_rate`.
+    by_last_part = {name.rpartition(".")[2]: name for name in known}
+    close = difflib.get_close_matches(key, known, n=1)
+    close += [by_last_part[part] for part in difflib.get_close_matches(key, by_last_part, n=1)]
+    # There is always one to name: the nearest, however far.
+    close += difflib.get_close_matches(key, known, n=1, cutoff=0.0)
+    nearest = known[close[0]]
+    return SettingsError(
+        f"{source}: unknown key {key!r}; "
+        f"the nearest known key is {nearest.key!r} ({nearest.expected})"
+    )
+
+
+def _shown(value: Any) -> str:
+    return f"the text {value!r}" if isinstance(value, str) else repr(value)

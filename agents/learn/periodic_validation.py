@@ -1,0 +1,98 @@
+"""Measuring the policy while it trains: which model is the best, and when to stop."""
+
+from collections.abc import Callable
+from typing import Any
+
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
+
+from ..experiment.settings import Experiment
+from ..experiment.worlds import make_worlds
+from ..measure.episodes import MEASURES, play_episodes
+from ..measure.suites import WHOLE_GAMES, find_starts
+from .model import ModelPolicy
+
+_LOGGED = tuple(name for name in MEASURES if name != "bricks_left")
+
+# Takes the number of decisions and the means of `MEASURES`; may return a reason to stop.
+Judge = Callable[[int, dict[str, float]], str | None]
+
+
+class PeriodicValidation(BaseCallback):
+    """Plays the validation's episodes at regular times, and reports each new best model.
+
+    It draws no random number that the training would draw, and so changes no weight.
+
+    Args:
+        experiment: its ``[validation]`` says what is played and when.
+        state: this callback's, empty or from a checkpoint; it is changed in place.
+        on_best: gets each model that is the best so far.
+        stop: gets the reason when the training should end.
+        judge: gets each measurement, and may return a reason to end the training.
+    """
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        state: dict[str, Any],
+        on_best: Callable[[PPO], None],
+        stop: Callable[[str], None],
+        judge: Judge | None = None,
+    ) -> None:
+        super().__init__()
+        self._experiment = experiment
+        self._settings = experiment.validation
+        self._state = state
+        state.setdefault("due", self._settings.every)
+        state.setdefault("best", None)
+        state.setdefault("worse", 0)
+        self._on_best = on_best
+        self._stop = stop
+        self._judge = judge
+        levels = self._settings.levels
+        self._whole_games = not levels
+        self._starts = find_starts(experiment, levels) if levels else (WHOLE_GAMES,)
+        self._worlds = make_worlds(experiment, len(self._starts) * self._settings.episodes)
+
+    def _on_rollout_start(self) -> None:
+        if self.model.num_timesteps >= self._state["due"]:
+            self.measure()
+
+    def _on_step(self) -> bool:
+        return True
+
+    def measure(self) -> None:
+        """Play, log, report the model if it is the best, and ask for the end if it is time."""
+        means = self._play()
+        step = self.model.num_timesteps
+        for name in _LOGGED:
+            self.logger.record(f"validation/{name}", means[name])
+        self.logger.dump(step)
+        state, settings = self._state, self._settings
+        state["due"] = (step // settings.every + 1) * settings.every
+        value, best = means[settings.best], state["best"]
+        state["worse"] = 0 if best is None or value > best else state["worse"] + 1
+        # Of equals the latest: once a rate is 1, later models still improve, and it cannot tell.
+        if best is None or value >= best:
+            state["best"] = value
+            self._on_best(self.model)  # type: ignore[arg-type]
+        reason = self._judge(step, means) if self._judge is not None else None
+        if reason is not None:
+            self._stop(reason)
+        elif settings.stop_at and means["cleared"] >= settings.stop_at:
+            self._stop(f"cleared rate {means['cleared']:.3f} reached at {step} decisions")
+        elif settings.patience and state["worse"] >= settings.patience:
+            self._stop(f"{state['worse']} measurements without a better one at {step} decisions")
+
+    def _play(self) -> dict[str, float]:
+        deterministic = self._experiment.evaluation.deterministic
+        policy = ModelPolicy(self.model, deterministic, self._settings.seed)  # type: ignore[arg-type]
+        self.model.policy.set_training_mode(False)
+        played = play_episodes(
+            self._worlds, policy, self._settings.seed, self._starts, whole_games=self._whole_games
+        )
+        return {name: float(values.mean()) for name, values in played.items()}
+
+    def close(self) -> None:
+        """Close the environment."""
+        self._worlds.close()

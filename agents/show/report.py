@@ -1,0 +1,109 @@
+"""What a report says about an agent: a model card, learning curves, results and a film."""
+
+import io
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ..experiment.reading import to_toml
+from ..experiment.runs import ModelFile
+from ..experiment.settings import Experiment
+from ..learn.curves import read_curve
+from ..learn.model import load_policy
+from ..measure.comparison import (
+    AGENT,
+    COLUMNS,
+    TITLES,
+    Results,
+    compare,
+    describe_suite,
+    level_interval,
+    summary_rows,
+)
+from ..measure.policy import Policy
+from ..measure.suites import Suite, make_suites
+from .frames import film_policy
+from .plots import plot_curves, plot_levels, plot_policies
+
+
+def describe_agent(
+    models: Sequence[ModelFile], overrides: list[tuple[str, str]]
+) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """Measure the models of one agent; return facts and pictures for `page.write_page`."""
+    experiment = models[0].run.experiment(overrides)
+    policies = [load_policy(model.path, experiment) for model in models]
+    curves = [curve for curve in (read_curve(model.run.curve) for model in models) if curve]
+    pictures = {"play.gif": _film(experiment, policies[0])}
+    if curves:
+        pictures["curves.png"] = _png(plot_curves(curves))
+    suites = []
+    for name, results in compare(experiment, {AGENT: policies}).items():
+        suite = make_suites(experiment)[name]
+        suites.append(_suite_facts(name, suite, results))
+        pictures[f"{name}.png"] = _png(plot_policies(name, results))
+        if suites[-1]["levels"]:
+            pictures[f"{name}-levels.png"] = _png(plot_levels(name, suite.starts, results))
+    facts = {
+        "name": experiment.name,
+        "env_id": experiment.env_id,
+        "observation": experiment.config.observation,
+        "training_levels": experiment.config.plain()["levels"],
+        "timesteps": experiment.training.timesteps,
+        "models": [_model_row(model) for model in models],
+        "origin": list(_origin_rows(models[0].run.read_notes())),
+        "curves": len(curves),
+        "suites": suites,
+        "settings": to_toml(models[0].run.experiment()),
+    }
+    return facts, pictures
+
+
+def _model_row(model: ModelFile) -> list[object]:
+    notes, described = model.run.read_notes(), model.describe()
+    seconds = sum(session["seconds"] for session in notes.get("sessions", []))
+    return [
+        described["run"],
+        described["seed"],
+        described["file"],
+        notes.get("timesteps", "?"),
+        f"{seconds / 60:.1f} min",
+        notes.get("outcome", "?"),
+        described["sha256"][:16],
+    ]
+
+
+def _origin_rows(notes: Mapping[str, Any]) -> Iterator[list[object]]:
+    """Yield one row for each version, and for each fact about the commit and the machine."""
+    for table in ("versions", "git", "hardware"):
+        for key, value in (notes.get(table) or {}).items():
+            yield [f"{table}: {key}", value]
+
+
+def _suite_facts(name: str, suite: Suite, results: Mapping[str, Results]) -> dict[str, Any]:
+    """Return the tables of a suite: all policies, and, of several levels, the agent on each."""
+    rows = [["level", *COLUMNS.values()]]
+    for level, start in enumerate(suite.starts):
+        cells = (str(level_interval(results[AGENT][key], level)) for key in COLUMNS)
+        rows.append([start.name, *cells])
+    return {
+        "name": name,
+        "heading": describe_suite(name, suite),
+        "summaries": [summary_rows(results, key, title) for key, title in TITLES.items()],
+        "levels": rows if len(suite.starts) > 1 else [],
+    }
+
+
+def _png(figure: Figure) -> bytes:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=100)
+    return buffer.getvalue()
+
+
+def _film(experiment: Experiment, policy: Policy) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "play.gif"
+        film_policy(experiment, policy, path)
+        return path.read_bytes()

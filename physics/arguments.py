@@ -1,0 +1,84 @@
+"""Checks of the arguments that users pass. Each message says which value is wrong, and why."""
+
+import math
+from collections.abc import Iterable
+from numbers import Real
+from operator import index
+from typing import Any
+
+Vector = tuple[float, float]
+
+
+def _number(name: str, value: Any) -> float:
+    """Return a real number as a float."""
+    # The quick test comes first: most numbers are floats, and NumPy's are, too.
+    if not isinstance(value, float) and (not isinstance(value, Real) or isinstance(value, bool)):
+        raise TypeError(f"{name} must be a number, but is {value!r}")
+    return float(value)
+
+
+def integer(name: str, value: Any) -> int:
+    """Return an integer; TypeError for anything else, such as a bool or 1.0."""
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} must be an integer, but is {value!r}")
+    return index(value)
+
+
+def whole(name: str, value: Any, at_least: int) -> int:
+    """Return an integer that is not less than ``at_least``."""
+    number = integer(name, value)
+    if number < at_least:
+        raise ValueError(f"{name} must be at least {at_least}, but is {value!r}")
+    return number
+
+
+def finite(name: str, value: Any) -> float:
+    """Return a finite number as a float; ValueError or TypeError otherwise."""
+    number = _number(name, value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be finite, but is {value!r}")
+    return number
+
+
+def positive(name: str, value: Any) -> float:
+    """Return a finite number above 0 as a float."""
+    number = finite(name, value)
+    if number <= 0.0:
+        raise ValueError(f"{name} must be greater than 0, but is {value!r}")
+    return number
+
+
+def not_negative(name: str, value: Any) -> float:
+    """Return a finite number that is not below 0 as a float."""
+    number = finite(name, value)
+    if number < 0.0:
+        raise ValueError(f"{name} must not be negative, but is {value!r}")
+    return number
+
+
+def inverse_mass(name: str, value: Any) -> float:
+    """Return 1 / mass; 0 for None, a static body's mass."""
+    if value is None:
+        return 0.0
+    inverse = 1.0 / positive(name, value)
+    if not math.isfinite(inverse):
+        raise ValueError(f"{name} is too small to divide by: {value!r}. Use larger units")
+    return inverse
+
+
+def vector(name: str, value: Any) -> Vector:
+    """Return two finite numbers as a tuple of floats."""
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        raise TypeError(f"{name} must be two numbers (x, y), but is {value!r}")
+    components = list(value)
+    if len(components) != 2:
+        raise ValueError(f"{name} must be two numbers (x, y), but has {len(components)}: {value!r}")
+    return finite(f"{name}[0]", components[0]), finite(f"{name}[1]", components[1])
+
+
+def duration(name: str, value: Any) -> float:
+    """Return a length of time, perhaps infinite, as a float."""
+    number = _number(name, value)
+    if not number >= 0.0:
+        raise ValueError(f"{name} must be 0 or more, perhaps infinite, but is {value!r}")
+    return number

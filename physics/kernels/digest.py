@@ -1,0 +1,82 @@
+"""The digest of all that a kernel's machine code is made from: its file, and what that imports.
+
+Numba's own cache notices a change in the file that holds a function, but not in a file that holds
+a function it *calls*, and then runs stale machine code. Here the digest covers the file and every
+file of this package that it imports, directly or not: to be stale, a kernel would have to call
+something that it cannot name. A constant that a kernel reads must therefore be written in source,
+not computed from the contents of some other file.
+"""
+
+import ast
+import hashlib
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+PACKAGE = __name__.rpartition(".physics.")[0]
+_PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
+
+
+@cache
+def digest(file: Path, compiler: str) -> str:
+    """Return 16 hexadecimal digits for a source file, what it imports, and the compiler's state."""
+    result = hashlib.sha256(compiler.encode())
+    for source in sorted(_import_closure(file)):
+        result.update(source.read_bytes())
+    return result.hexdigest()[:16]
+
+
+@cache
+def last_edit(file: Path) -> float:
+    """Return when the file or one that it imports was edited, in seconds since the epoch."""
+    return max(source.stat().st_mtime for source in _import_closure(file))
+
+
+@cache
+def _import_closure(file: Path) -> frozenset[Path]:
+    """Return the file and all files of the package that it imports, directly or not."""
+    found = {file}
+    frontier = [file]
+    while frontier:
+        new = _imported_files(frontier.pop()) - found
+        found |= new
+        frontier += new
+    return frozenset(found)
+
+
+@cache
+def _imported_files(file: Path) -> frozenset[Path]:
+    """Return the files of the package that one file names in its import statements."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_bytes())):
+        for folder, dotted in _imported_names(node, file):
+            path = folder.joinpath(*dotted.split("."))
+            found |= {path.with_name(f"{path.name}.py"), path / "__init__.py"}
+    return frozenset(path for path in found if path.is_file())
+
+
+def _imported_names(node: ast.AST, file: Path) -> Iterator[tuple[Path, str]]:
+    """Yield what an import statement may name: a folder, and dotted names below it.
+
+    Inside the package every import is relative; kernels outside of it name the package.
+    """
+    if isinstance(node, ast.ImportFrom) and node.level:
+        folder = file.parents[node.level - 1]
+        dotted = node.module or ""
+    elif isinstance(node, ast.ImportFrom) and node.module:
+        top, _, dotted = node.module.partition(".")
+        if top != PACKAGE:
+            return
+        folder = _PACKAGE_FOLDER
+    elif isinstance(node, ast.Import):
+        for alias in node.names:
+            top, _, dotted = alias.name.partition(".")
+            if top == PACKAGE:
+                yield _PACKAGE_FOLDER, dotted
+        return
+    else:
+        return
+    yield folder, dotted
+    # `from . import x` and `from .package import x` may name modules, too.
+    for alias in node.names:
+        yield folder, f"{dotted}.{alias.name}".strip(".")

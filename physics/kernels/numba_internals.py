@@ -1,0 +1,192 @@
+"""Everything that patches Numba, or uses a part of it that it does not document.
+
+A new release of Numba may change any of this. ``tests/physics/kernels/test_numba_internals.py``
+has one test for each part, which says what is missing and where it is used:
+
+==================================  ================================================================
+``config.DISABLE_JIT, .OPT, ...``   to know how Numba compiles
+``config.CACHE_DIR``                to choose the cache folder of one function
+``njit(_nrt=..., no_c..._wrapper)`` to leave out code that kernels do not need
+``Dispatcher.get_call_template``    to compile once for constants and variables
+``types.unliteral``                 the same
+``CPUDispatcher``                   to refuse a call from Python that would crash
+``Dispatcher._cache``               to put our cache in place of Numba's
+``FunctionCache``                   our cache is a subclass
+``FunctionCache._impl``             to name the files of machine code
+``FunctionCache._cache_file``       the same, by its ``_data_name``
+``event`` ``numba:compile``         to notice that the compiler is at work
+``intrinsic, arrayobj``             to make an array that counts no references
+==================================  ================================================================
+"""
+
+import gc
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from pickle import UnpicklingError
+from typing import Any, cast
+from uuid import uuid4
+
+import numba
+from numba.core import event as events
+from numba.core import types
+from numba.core.caching import FunctionCache
+from numba.core.extending import intrinsic
+from numba.core.registry import CPUDispatcher
+from numba.np.arrayobj import make_array, populate_array
+
+from .digest import PACKAGE
+from .messages import say_compiling, say_unwritable
+
+# Numba says that it is typed and hardly is, differently in every release.
+_numba = cast(Any, numba)
+
+# Settings that change the machine code; variables NUMBA_... of the same names set them.
+CODE_SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")
+
+# Without Numba's run time, which counts the references of every array that is passed on.
+WITHOUT_RUNTIME = {"_nrt": False}
+# With it: said explicitly, for otherwise a function inherits this from the one that calls it.
+WITH_RUNTIME = {"_nrt": True}
+# Without the function through which Python calls, which takes apart every argument.
+WITHOUT_PYTHON_ENTRY = {"no_cpython_wrapper": True}
+# Without a C function, which nobody calls.
+WITHOUT_C_ENTRY = {"no_cfunc_wrapper": True}
+
+
+def is_interpreted() -> bool:
+    """Return whether kernels are plain Python functions (``NUMBA_DISABLE_JIT=1``)."""
+    return bool(_numba.config.DISABLE_JIT)
+
+
+def compiler_state() -> str:
+    """Return what machine code depends on besides sources: versions and settings."""
+    settings = [getattr(_numba.config, name) for name in CODE_SETTINGS]
+    return f"{numba.__version__} {sys.implementation.cache_tag} {settings}"
+
+
+def compile_once_for_constants(dispatcher: Any) -> None:
+    """Let calls with constants share the machine code of calls with variables.
+
+    Numba would compile a kernel that is called with the constants 2 and 3 for each of them, and
+    with it all that it calls: once for each pair of shapes that a game knows, for instance.
+    """
+    template = dispatcher.get_call_template
+    unliteral = _numba.types.unliteral
+
+    def get_call_template(arguments: Any, keywords: Any) -> Any:
+        plain = tuple(unliteral(argument) for argument in arguments)
+        named = {name: unliteral(value) for name, value in dict(keywords).items()}
+        return template(plain, named)
+
+    dispatcher.get_call_template = get_call_template
+
+
+class InnerDispatcher(CPUDispatcher):  # type: ignore[misc]
+    """A kernel that Python cannot call."""
+
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
+        """Refuse; without this, the process would crash."""
+        raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
+
+
+def refuse_python(dispatcher: Any) -> None:
+    """Let a kernel that was compiled `WITHOUT_PYTHON_ENTRY` refuse a call from Python."""
+    dispatcher.__class__ = InnerDispatcher
+
+
+def cache_in(folder: Path, dispatcher: Any) -> None:
+    """Let a kernel keep its machine code in a folder."""
+    # Numba reads this setting when the cache is made, and offers no argument for it.
+    previous = _numba.config.CACHE_DIR
+    _numba.config.CACHE_DIR = str(folder)
+    try:
+        dispatcher._cache = KernelCache(dispatcher.py_func)
+    finally:
+        _numba.config.CACHE_DIR = previous
+
+
+class KernelCache(FunctionCache):  # type: ignore[misc]
+    """Numba's cache of one function, safe beside other processes and on a full or broken disk."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        # Numba numbers the data files of a function's signatures 1, 2, ... Two processes that
+        # compile different signatures at once would both write number 1, and the index could send
+        # one signature to the other's machine code. With a unique name for each file, the worst
+        # case is to compile twice.
+        stem = self._impl.filename_base
+        self._cache_file._data_name = lambda number: f"{stem}.{uuid4().hex[:16]}.nbc"
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load the machine code for one signature; None if there is none that can be read."""
+        try:
+            return super().load_overload(sig, target_context)
+        except (EOFError, UnpicklingError):  # a file was cut short, by a power failure, say
+            with suppress(OSError):
+                self.flush()
+            return None
+        except OSError:
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Save the machine code for one signature, or go on without."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            say_unwritable(Path(self.cache_path).parents[1], error)
+
+
+class CompilerListener(events.Listener):  # type: ignore[misc]
+    """Tells the user that the compiler is at work, and makes it faster.
+
+    The compiler makes millions of small objects and little garbage. The collector of cycles, which
+    looks through them again and again, would take a fifth of the time: it pauses.
+    """
+
+    def __init__(self) -> None:
+        self._depth = 0  # kernels being compiled, each for the one before it
+        self._was_collecting = False
+
+    def on_start(self, event: Any) -> None:
+        """Note that a function is compiled; tell the user if it is one of this package."""
+        if event.data["dispatcher"].py_func.__module__.startswith(f"{PACKAGE}."):
+            say_compiling()
+        if self._depth == 0:
+            self._was_collecting = gc.isenabled()
+            gc.disable()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """Let garbage be collected again."""
+        self._depth -= 1
+        if self._depth == 0 and self._was_collecting:
+            gc.enable()
+
+
+events.register("numba:compile", CompilerListener())
+
+
+@intrinsic
+def borrowed_view(typing_context: Any, block: Any, start: Any, count: Any, dtype: Any) -> Any:
+    """Return an array that looks into a block of bytes and owns no part of it."""
+    array_type = types.Array(dtype.dtype, 1, "C")
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        source = make_array(signature.args[0])(context, builder, arguments[0])
+        view = make_array(array_type)(context, builder)
+        address = builder.gep(source.data, [arguments[1]])
+        size = context.get_abi_sizeof(context.get_data_type(array_type.dtype))
+        size = context.get_constant(types.intp, getattr(array_type.dtype, "size", size))
+        populate_array(
+            view,
+            data=builder.bitcast(address, view.data.type),
+            shape=[arguments[2]],
+            strides=[size],
+            itemsize=size,
+            meminfo=None,
+        )
+        return view._getvalue()
+
+    return array_type(block, types.intp, types.intp, dtype), generate

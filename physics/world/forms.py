@@ -1,0 +1,132 @@
+"""The two forms of a world: lists that are edited, and blocks of bytes that kernels step."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from ..body import Body, FloatArray
+from ..errors import InseparableError
+from .records import Clock
+from .setup import BodySpec, ByteArray, build_setup, inseparable_pair
+from .states import Stepper
+
+
+@dataclass
+class Scene:
+    """A world as it is edited.
+
+    Attributes:
+        is_continuous: with times of impact, not by the lecture's procedure.
+        max_hits: of one body in one step.
+        specs: one per body.
+        motions: x, y, vx, vy, one per body.
+        overrides: the restitution of single pairs, a < b.
+        inside: pairs of a sensor and a body inside it.
+        time: as a sum of two numbers, see `clock_time`.
+        capped: how often a body has used up its hits of a step.
+    """
+
+    is_continuous: bool
+    max_hits: int
+    specs: list[BodySpec] = field(default_factory=list)
+    motions: list[list[float]] = field(default_factory=list)
+    overrides: dict[tuple[int, int], float] = field(default_factory=dict)
+    inside: set[tuple[int, int]] = field(default_factory=set)
+    time: tuple[float, float] = (0.0, 0.0)
+    capped: int = 0
+
+    def remove(self, index: int) -> None:
+        """Remove a body. The indices of later ones go down by one."""
+        del self.specs[index]
+        del self.motions[index]
+
+        def renumbered(pairs: Iterable[tuple[int, int]]) -> Iterable[tuple[int, int]]:
+            return ((a - (a > index), b - (b > index)) for a, b in pairs)
+
+        kept = {pair: e for pair, e in self.overrides.items() if index not in pair}
+        self.overrides = dict(zip(renumbered(kept), kept.values(), strict=True))
+        self.inside = set(renumbered(pair for pair in self.inside if index not in pair))
+
+    def body(self, index: int, motions: FloatArray) -> Body:
+        """Return a body. Its motion is taken from ``motions``, float64 [n, 4]."""
+        spec = self.specs[index]
+        x, y, vx, vy = motions[index].tolist()
+        return Body(spec.collider, (x, y), (vx, vy), spec.mass, spec.restitution)
+
+    def all_motions(self) -> FloatArray:
+        """Return x, y, vx, vy of all bodies, float64 [n, 4], a copy."""
+        return np.array(self.motions, np.float64).reshape(-1, 4)
+
+    def forget_inside(self, index: int) -> None:
+        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
+        self.inside = {pair for pair in self.inside if index not in pair}
+
+
+class Built:
+    """A world as kernels step it, made from a scene.
+
+    Attributes:
+        setup: what does not change.
+        states: uint8 [1, bytes], what changes.
+        motions: float64 [movers, 4], a view of the states: x, y, vx, vy of the moving bodies.
+        clock: `Clock` [1], a view of the states.
+        stepper: steps the states.
+        warned: how often a body had used up its hits when the user was last warned of it.
+
+    Raises:
+        InseparableError: if two bodies have to bounce and no finite translation separates them.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._first_motions = scene.all_motions()
+        self.setup = build_setup(
+            scene.specs,
+            self._first_motions[:, :2],
+            self._first_motions[:, 2:],
+            scene.overrides,
+            scene.max_hits,
+            scene.is_continuous,
+        )
+        pair = inseparable_pair(self.setup)
+        if pair is not None:
+            raise InseparableError(*(scene.body(index, self._first_motions) for index in pair))
+        self.states: ByteArray = self.setup.new_state(1)
+        self.motions: FloatArray = self.setup.motion_view(self.states)[0]
+        self.motions[:] = self._first_motions[self.setup.moving]
+        self.setup.motions_after_step_view(self.states)[0] = self.motions
+        self._inside: npt.NDArray[np.uint8] = self.setup.inside_view(self.states)[0]
+        for row, sensor in enumerate(self.setup.sensing.tolist()):
+            for body in range(len(scene.specs)):
+                self._inside[row, body] = (sensor, body) in scene.inside
+        self.clock = self.states[0, : Clock.itemsize].view(Clock)
+        self.clock["time"], self.clock["time_low"] = scene.time
+        self.clock["capped"] = scene.capped
+        self.warned = scene.capped
+        self.stepper = Stepper(self.setup, self.states)
+
+    @property
+    def capped(self) -> int:
+        """How often a body has used up its hits of a step."""
+        return int(self.clock["capped"][0])
+
+    def all_motions(self) -> FloatArray:
+        """Return x, y, vx, vy of all bodies, float64 [n, 4], a copy."""
+        motions = self._first_motions.copy()
+        motions[self.setup.moving] = self.motions
+        return motions
+
+    def forget_inside(self, index: int) -> None:
+        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
+        self._inside[:, index] = 0
+        self._inside[self.setup.sensing == index] = 0
+        self.clock["planned"] = 0
+
+    def write_back(self, scene: Scene) -> None:
+        """Write into the scene what stepping has changed."""
+        scene.motions = self.all_motions().tolist()
+        rows, bodies = np.nonzero(self._inside)
+        scene.inside = set(zip(self.setup.sensing[rows].tolist(), bodies.tolist(), strict=True))
+        scene.time = (float(self.clock["time"][0]), float(self.clock["time_low"][0]))
+        scene.capped = self.capped

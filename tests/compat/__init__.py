@@ -1,0 +1,1 @@
+"""Tries the environment with every trainer and every supported Gymnasium: `make compat`."""

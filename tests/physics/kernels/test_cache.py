@@ -1,0 +1,140 @@
+"""The disk cache: it is used, shared, repaired and pruned, and programs run without it."""
+
+import os
+import shutil
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from helpers.scratch_package import CALL, Scratch
+
+NOBODY = """
+import os
+for name in ("HOME", "USERPROFILE", "HOMEPATH", "HOMEDRIVE", "XDG_CACHE_HOME", "LOCALAPPDATA"):
+    os.environ.pop(name, None)
+try:
+    import pwd
+except ModuleNotFoundError:
+    pass
+else:
+    def getpwuid(uid):
+        raise KeyError(uid)
+    pwd.getpwuid = getpwuid
+"""
+
+
+def test_second_process_loads_without_compiling(scratch: Scratch) -> None:
+    cold = scratch.run()
+    warm = scratch.run()
+    assert cold.result == warm.result == 21.0
+    assert sorted(cold.compiled) == ["scaled", "shifted"]
+    assert warm.compiled == []
+
+
+@pytest.mark.parametrize("place", ["below a file", "full"])
+def test_programs_run_without_a_cache(scratch: Scratch, place: str) -> None:
+    """An unwritable home or a full disk makes a program slower, and does not end it.
+
+    Numba itself would fall back to ``__pycache__``, and with it to stale machine code. (Tests may
+    run as root, who may write everywhere: therefore a file is in the way.)
+    """
+    program = CALL
+    if place == "below a file":
+        scratch.cache.write_text("in the way")
+    else:
+        program = """
+import pathlib, shutil
+from arkanoid.envs.caller import shifted
+kernels = pathlib.Path(__import__("os").environ["ARKANOID_CACHE_DIR"]) / "kernels"
+shutil.rmtree(kernels)
+kernels.write_text("in the way")
+report(shifted(10.0))
+"""
+    outcome = scratch.run(program)
+    assert outcome.result == 21.0
+    assert sum("ARKANOID_CACHE_DIR" in line for line in outcome.stderr.splitlines()) == 1
+    assert not list(scratch.code.rglob("*.nb[ci]"))
+
+
+@pytest.mark.parametrize("variable", ["", "~/cache"])
+def test_programs_run_for_a_user_without_a_home(scratch: Scratch, variable: str) -> None:
+    """In a container with an unknown user, `import arkanoid.physics` raised an error.
+
+    The program makes the user database empty. With ``~/cache``, there was a folder named "~".
+    """
+    outcome = scratch.run(NOBODY + CALL, ARKANOID_CACHE_DIR=variable)
+    assert outcome.result == 21.0
+    assert sum("ARKANOID_CACHE_DIR" in line for line in outcome.stderr.splitlines()) == 1
+    assert not list(scratch.code.rglob("*.nb[ci]"))
+
+
+def test_a_tilde_is_the_home(scratch: Scratch) -> None:
+    """In a settings file, no shell replaces ``~`` by the home."""
+    home = str(scratch.code.parent)
+    scratch.run(ARKANOID_CACHE_DIR="~/cache", HOME=home, USERPROFILE=home)
+    assert scratch.folders()
+    assert not (scratch.code / "~").exists()
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("size", [0, 40])
+def test_heals_a_file_cut_short(scratch: Scratch, suffix: str, size: int) -> None:
+    """After a power failure Numba's index may be empty, and every start ended in an EOFError."""
+    scratch.run()
+    for file in scratch.cache.rglob(f"*.{suffix}"):
+        file.write_bytes(file.read_bytes()[:size])
+    assert scratch.run().result == 21.0
+    assert scratch.run().compiled == []
+
+
+def test_processes_may_compile_at_the_same_time(scratch: Scratch) -> None:
+    with ThreadPoolExecutor() as pool:
+        outcomes = list(pool.map(lambda _: scratch.run(), range(4)))
+    assert [outcome.result for outcome in outcomes] == [21.0] * 4
+    warm = scratch.run()
+    assert (warm.result, warm.compiled) == (21.0, [])
+
+
+def test_two_signatures_never_share_a_file(scratch: Scratch) -> None:
+    """Two processes compiled two signatures of one kernel at once, and one ran the other's code.
+
+    Numba calls the first data file of each process ``...1.nbc``, and one process's index then named
+    the other's machine code. Here the two do not see each other's cache, as at that moment.
+    """
+    call = "from arkanoid.physics.callee import scaled; report(scaled({}))"
+    scratch.run(call.format("10.0"))
+    of_floats = scratch.data_files()
+    shutil.rmtree(scratch.cache)
+    scratch.run(call.format("10"))
+    assert len(of_floats) == 1
+    assert len(scratch.data_files()) == 1
+    assert not of_floats & scratch.data_files()
+
+
+def test_unused_folders_are_pruned(scratch: Scratch) -> None:
+    """Every edit of a kernel makes new folders; unused ones are deleted after 30 days."""
+    scratch.run()
+    before = scratch.folders()
+    assert len(before) == 2  # the callee's and the caller's
+    foreign = scratch.cache / "kernels" / "notes"
+    foreign.mkdir()
+    long_ago = time.time() - 31 * 86_400
+    for folder in (before[0], foreign):
+        os.utime(folder, (long_ago, long_ago))
+
+    scratch.replace("arkanoid/physics/callee.py", "x * FACTOR", "x * FACTOR + 100.0")
+    scratch.run()
+    left = scratch.folders()
+    assert before[0] not in left
+    assert before[1] in left
+    assert foreign in left
+    assert len(left) == 4
+
+
+def test_use_keeps_a_folder_from_being_pruned(scratch: Scratch) -> None:
+    scratch.run()
+    long_ago = time.time() - 31 * 86_400
+    for folder in scratch.folders():
+        os.utime(folder, (long_ago, long_ago))
+    assert scratch.run().compiled == []
+    assert all(time.time() - folder.stat().st_mtime < 86_400 for folder in scratch.folders())

@@ -1,0 +1,77 @@
+"""The digest: after any edit, nothing runs stale machine code."""
+
+import pytest
+from helpers.scratch_package import Scratch
+
+
+def test_caller_sees_an_edited_callee(scratch: Scratch) -> None:
+    """Numba's own cache looks only at the caller's file, and kept running the old callee."""
+    assert scratch.run().result == 21.0
+    scratch.replace("arkanoid/physics/callee.py", "x * FACTOR", "x * FACTOR + 100.0")
+    assert scratch.run().result == 121.0
+
+
+def test_caller_sees_an_edited_constant(scratch: Scratch) -> None:
+    """The constant is two files away. Its value is a part of the machine code."""
+    assert scratch.run().result == 21.0
+    scratch.replace("arkanoid/physics/numbers.py", "2.0", "3.0")
+    assert scratch.run().result == 31.0
+
+
+def test_caller_outside_the_package_sees_an_edited_callee(scratch: Scratch) -> None:
+    call = "from user import shifted; report(shifted(10.0))"
+    assert scratch.run(call).result == 21.0
+    assert scratch.run(call).compiled == []
+    scratch.replace("arkanoid/physics/numbers.py", "2.0", "3.0")
+    assert scratch.run(call).result == 31.0
+
+
+@pytest.mark.parametrize(
+    ("statement", "call"),
+    [
+        ("from .. import physics", "physics.extra.FACTOR"),
+        ("from ..physics import extra", "extra.FACTOR"),
+        ("from ..physics import extra as other", "other.FACTOR"),
+        ("from ..physics import (  # one (of two)\n    extra,\n)", "extra.FACTOR"),
+    ],
+)
+def test_every_form_of_import_is_followed(scratch: Scratch, statement: str, call: str) -> None:
+    scratch.write("arkanoid/physics/__init__.py", "from . import extra\n")
+    scratch.write("arkanoid/physics/extra.py", "FACTOR = 5.0\n")
+    scratch.replace("arkanoid/envs/caller.py", "from ..physics.callee", f"{statement}\n#")
+    scratch.replace("arkanoid/envs/caller.py", "scaled(x)", f"x * {call}")
+    assert scratch.run().result == 51.0
+    scratch.replace("arkanoid/physics/extra.py", "5.0", "6.0")
+    assert scratch.run().result == 61.0
+
+
+def test_edit_during_a_start_is_not_lost(scratch: Scratch) -> None:
+    """A source was saved after a process had imported it, and before its digest was computed.
+
+    The old machine code was then in the new digest's folder, and every later process ran it.
+    """
+    during = scratch.run("""
+import pathlib, time
+from arkanoid.physics import callee
+time.sleep(0.1)  # the clock of files is coarse
+file = pathlib.Path(callee.__file__)
+file.write_text(file.read_text().replace("x * FACTOR", "x * FACTOR + 100.0"))
+from arkanoid.envs.caller import shifted
+report(shifted(10.0))
+""")
+    assert during.result == 21.0
+    assert scratch.run().result == 121.0
+
+
+def test_edit_recompiles_only_what_can_depend_on_it(scratch: Scratch) -> None:
+    scratch.run()
+    scratch.replace("arkanoid/envs/caller.py", "1.0", "2.0")
+    # The compiler asks for the callee's signature, and finds it in the cache.
+    assert scratch.run().compiled == ["shifted"]
+
+
+def test_debugging_does_not_run_code_without_checks(scratch: Scratch) -> None:
+    """Bounds checks found nothing: the machine code came from the cache, without checks."""
+    scratch.run()
+    assert scratch.run(NUMBA_BOUNDSCHECK="1").compiled != []
+    assert scratch.run().compiled == []

@@ -1,0 +1,172 @@
+"""What `numba_internals` patches in Numba, or uses undocumented: one test for each part.
+
+If a new release of Numba lacks or changes a part, its test fails and says where it is used.
+"""
+
+import inspect
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+from arkanoid.physics.kernels import numba_internals
+from numba.core import event, types
+from numba.core.caching import FunctionCache
+from numba.core.registry import CPUDispatcher
+from numba.np import arrayobj
+
+CHANGED = "this Numba ({}) has another `{}`: see `{}` in physics/kernels/numba_internals.py"
+
+
+def double(number: Any) -> Any:
+    return number + number
+
+
+def expect(holds: bool, part: str, user: str) -> None:
+    """Fail with the name of the part of Numba that has changed, and of what uses it."""
+    assert holds, CHANGED.format(numba.__version__, part, user)
+
+
+@pytest.mark.parametrize("name", ["DISABLE_JIT", *numba_internals.CODE_SETTINGS])
+def test_setting_exists(name: str) -> None:
+    expect(hasattr(numba.config, name), f"config.{name}", "compiler_state")
+
+
+def test_cache_dir_decides_where_a_cache_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    cache = FunctionCache(double)
+    expect(tmp_path in Path(cache.cache_path).parents, "config.CACHE_DIR", "cache_in")
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        numba_internals.WITHOUT_RUNTIME,
+        numba_internals.WITH_RUNTIME,
+        numba_internals.WITHOUT_PYTHON_ENTRY,
+        numba_internals.WITHOUT_C_ENTRY,
+    ],
+)
+def test_option_is_taken(option: dict[str, bool]) -> None:
+    (name,) = option
+    try:
+        compiled = numba.njit(double, **option)
+        compiled.compile("float64(float64)")
+    except (KeyError, TypeError, numba.NumbaError):
+        expect(False, f"njit({name}=...)", "WITHOUT_...")
+    expect(compiled.targetoptions[name] is option[name], f"njit({name}=...)", "WITHOUT_...")
+
+
+def test_call_template_is_asked_for_on_the_dispatcher() -> None:
+    compiled = numba.njit(double)
+    asked = []
+    template = getattr(compiled, "get_call_template", None)
+    expect(template is not None, "Dispatcher.get_call_template", "compile_once_for_constants")
+
+    def get_call_template(arguments: Any, keywords: Any) -> Any:
+        asked.append(arguments)
+        return template(arguments, keywords)
+
+    compiled.get_call_template = get_call_template
+    assert numba.njit(lambda: compiled(2))() == 4
+    expect(
+        len(asked) > 0 and all(isinstance(argument, types.Type) for (argument,) in asked),
+        "Dispatcher.get_call_template(arguments, keywords)",
+        "compile_once_for_constants",
+    )
+
+
+def test_unliteral_turns_a_constant_into_its_type() -> None:
+    expect(
+        types.unliteral(types.literal(2)) == types.intp, "unliteral", "compile_once_for_constants"
+    )
+
+
+def test_compiled_functions_are_cpu_dispatchers() -> None:
+    expect(type(numba.njit(double)) is CPUDispatcher, "CPUDispatcher", "InnerDispatcher")
+
+
+def test_a_dispatcher_keeps_its_cache_as_an_attribute() -> None:
+    """It asks the cache for each signature before it compiles it, and saves it afterwards."""
+    calls = []
+
+    class Recorder:
+        def load_overload(self, sig: Any, target_context: Any) -> None:
+            calls.append("load")
+
+        def save_overload(self, sig: Any, data: Any) -> None:
+            calls.append("save")
+
+    compiled = numba.njit(double)
+    expect(hasattr(compiled, "_cache"), "Dispatcher._cache", "cache_in")
+    compiled._cache = Recorder()
+    compiled.compile("float64(float64)")
+    expect(calls == ["load", "save"], "Dispatcher._cache", "cache_in")
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters"),
+    [
+        ("__init__", ["self", "py_func"]),
+        ("load_overload", ["self", "sig", "target_context"]),
+        ("save_overload", ["self", "sig", "data"]),
+        ("flush", ["self"]),
+    ],
+)
+def test_function_cache_has_its_methods(name: str, parameters: list[str]) -> None:
+    method = getattr(FunctionCache, name, None)
+    expect(method is not None, f"FunctionCache.{name}", "KernelCache")
+    found = list(inspect.signature(method).parameters)
+    expect(found == parameters, f"FunctionCache.{name}({', '.join(found)})", "KernelCache")
+
+
+def test_function_cache_names_its_data_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the stem that `_impl` has, and a method of `_cache_file` that can be replaced."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    compiled = numba.njit(double)
+    cache = FunctionCache(double)
+    stem = getattr(getattr(cache, "_impl", None), "filename_base", None)
+    expect(isinstance(stem, str), "FunctionCache._impl.filename_base", "KernelCache")
+    name = getattr(getattr(cache, "_cache_file", None), "_data_name", lambda _: "")(1)
+    part = "FunctionCache._cache_file._data_name"
+    expect(name.startswith(stem) and name.endswith(".nbc"), part, "KernelCache")
+    cache._cache_file._data_name = lambda number: "own.nbc"
+    compiled._cache = cache
+    compiled.compile("float64(float64)")
+    written = [file.name for file in tmp_path.rglob("*.nbc")]
+    expect(written == ["own.nbc"], part, "KernelCache")
+
+
+def test_compiling_is_an_event_with_its_dispatcher() -> None:
+    compiled = numba.njit(double)
+    with event.install_recorder("numba:compile") as recorder:
+        compiled.compile("float64(float64)")
+    ours = [each for _, each in recorder.buffer if each.data.get("dispatcher") is compiled]
+    expect([each.is_start for each in ours] == [True, False], "numba:compile", "CompilerListener")
+    expect(compiled.py_func is double, "Dispatcher.py_func", "CompilerListener")
+
+
+def test_arrays_are_made_from_parts() -> None:
+    parameters = list(inspect.signature(arrayobj.populate_array).parameters)
+    expect(
+        parameters[:6] == ["array", "data", "shape", "strides", "itemsize", "meminfo"],
+        "populate_array",
+        "borrowed_view",
+    )
+    expect(hasattr(arrayobj, "make_array"), "make_array", "borrowed_view")
+
+
+def test_a_borrowed_view_looks_into_its_block() -> None:
+    dtype = np.dtype(np.int64)
+
+    @numba.njit
+    def third(block: Any) -> Any:
+        return numba_internals.borrowed_view(block, 8, 2, dtype)[1]
+
+    block = np.arange(4)
+    expect(third(block.view(np.uint8)) == 2, "array", "borrowed_view")
