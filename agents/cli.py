@@ -81,7 +81,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         package = (error.name or "").partition(".")[0]
         if package not in _EXTRAS:
             raise
-        return _fail(f'{package} is missing: pip install "arkanoid[{_EXTRAS[package]}]"', 1)
+        command = f'pip install -e ".[{_EXTRAS[package]}]"'
+        return _fail(f"{package} is missing: run `{command}` in arkanoid's repository", 1)
 
 
 def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:

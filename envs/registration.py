@@ -22,7 +22,7 @@ def register_environments() -> None:
     """Register the environments with Gymnasium; what is already there stays, without a warning."""
     games: dict[str, dict[str, Any]] = {
         "Arkanoid-v0": {},
-        # The easiest one to learn.
+        # The simplest to learn.
         "ArkanoidLite-v0": {"actions": "discrete3", "capsules": False, "enemies": False},
     }
     for name, keywords in games.items():

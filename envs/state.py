@@ -1,8 +1,8 @@
 """The data of the game: one NumPy record per world, so that a snapshot is a copy of bytes.
 
 What never changes during play is kept apart, and all worlds of a batch share it: the rules
-(`rulebook.Rules`) and the levels that are played in turn (`LevelEntry`). The layout of the present round
-belongs to the world, because each world may play another one.
+(`rulebook.Rules`) and the levels that are played in turn (`LevelEntry`). The layout of the present
+round belongs to the world, because each world may play another one.
 """
 
 import math
@@ -32,8 +32,8 @@ AS_CONFIGURED = 0
 GIVEN_LAYOUT = 1
 GIVEN_SEED = 2
 
-# How many of the latest changes of bricks a world remembers, so that whoever shows the bricks need
-# not look at all of them. A power of two.
+# A world remembers this number of latest changes of its bricks, so that observers need not look at
+# all bricks. It is a power of two.
 MAX_CHANGES = 8
 
 _LINE = 64  # bytes
@@ -77,8 +77,8 @@ World = record_dtype(
         ("score", np.int64),
         ("lives", np.int64),
         ("round_number", np.int64),  # from 1
-        ("brick_changes", np.int64),  # how many there were, in earlier episodes, too
-        ("changed_cells", np.uint8, (MAX_CHANGES,)),  # of the latest: number i at i % MAX_CHANGES
+        ("brick_changes", np.int64),  # their number, earlier episodes included
+        ("changed_cells", np.uint8, (MAX_CHANGES,)),  # by change i at i % MAX_CHANGES
         ("paddle_x", np.float64),
         ("paddle_vx", np.float64),  # of the latest tick
         ("paddle_half", np.float64),  # half its width
@@ -94,19 +94,15 @@ World = record_dtype(
         ("ball_state", np.int32, (MAX_BALLS,)),
         ("ball_release", np.int32, (MAX_BALLS,)),  # ticks until a held ball leaves by itself
         ("ball_bounces", np.int32, (MAX_BALLS,)),  # without damage or paddle contact
-        ("done", np.int16),  # the episode is over; the next step resets in next-step mode
         ("idle", np.int32),  # ticks since a brick or the boss was damaged
-        ("cleared", np.int16),  # the round is won; the next begins at the end of the tick
         ("needed", np.int32),  # hits that clear the round, at its beginning
         ("hits_left", np.int32),  # hits that still clear the round
         ("bricks_left", np.int32),  # breakable bricks
         ("speed_stage", np.int32),
-        ("exit_open", np.int16),  # the gate in the right wall
         ("beam_wait", np.int32),  # ticks until the laser can shoot again
         ("beams", np.int32),  # how many fly
         ("enemies", np.int32),  # how many there are
         ("enemy_wait", np.int32),  # ticks until the next one comes in
-        ("enemy_gate", np.int16),  # through which it comes
         ("boss_hits", np.int32),  # that it still takes; 0: there is none
         ("shards", np.int32),  # how many fly
         # What happened in this decision, see `Outcome`.
@@ -116,6 +112,11 @@ World = record_dtype(
         ("enemies_destroyed", np.int16),
         ("lives_lost", np.int16),
         ("rounds_cleared", np.int16),
+        # Flags, and what else is small.
+        ("done", np.int16),  # the episode is over; the next step resets in next-step mode
+        ("cleared", np.int16),  # the round is won; the next begins at the end of the tick
+        ("exit_open", np.int16),  # the gate in the right wall
+        ("enemy_gate", np.int16),  # through which the next enemy comes
         # The hits that each brick still takes (0: there is none). A ball looks at those near it.
         ("brick_hits", np.uint8, (CELLS,)),
         # What is touched only while there are such things, or when something happens to them.

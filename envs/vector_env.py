@@ -124,8 +124,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         batch.step()
         outcomes = batch.outcomes
         infos: dict[str, Any] = {}
-        terminated = outcomes["terminated"].copy()
-        truncated = outcomes["truncated"].copy()
+        terminated: NDArray[np.bool_] = outcomes["terminated"].copy()
+        truncated: NDArray[np.bool_] = outcomes["truncated"].copy()
         if self._mode is Autoreset.SAME_STEP:
             infos = self._final_infos(terminated | truncated)
         infos |= self._infos(outcomes, self._everywhere)
@@ -187,8 +187,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         Args:
             snapshot: of one world: a single environment's, or ``snapshot(world)``.
-            seed: seeds world ``i``'s random numbers from here on with ``seed + i``. None: all worlds
-                will have the same ones, so that a planner sees what chance will bring.
+            seed: seeds world ``i``'s random numbers from here on with ``seed + i``. None: all
+                worlds will have the same ones, so that a planner sees what chance will bring.
 
         Raises:
             TypeError, ValueError: as `restore`.

@@ -1,4 +1,4 @@
-"""Arguments that several commands take; no command itself."""
+"""Arguments that several commands take; this module is not a command."""
 
 import argparse
 

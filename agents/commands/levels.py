@@ -1,4 +1,4 @@
-"""`arkanoid levels`: lists the named rounds; draws any level in the terminal or as a PNG."""
+"""`arkanoid levels`: lists the named levels; draws any level in the terminal or as a PNG."""
 
 import argparse
 import os
@@ -9,7 +9,7 @@ from ..experiment.errors import SettingsError
 _EPILOG = """\
 LEVEL is a named round, the path of a level file, or seed:N for a generated level.
 
-  arkanoid levels                                   the named rounds
+  arkanoid levels                                   the named levels
   arkanoid levels spiral                            draws one
   arkanoid levels seed:7 --difficulty 0.8           draws a generated one
   arkanoid levels spiral > mine.txt                 writes its file, which you can change
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--png",
         metavar="OUT",
-        help="write a picture of the levels instead; without LEVEL, of all named rounds",
+        help="write a picture of the levels instead; without LEVEL, of all named levels",
     )
     parser.epilog = _EPILOG
 

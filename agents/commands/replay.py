@@ -51,9 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_seconds,
         default=0.0,
         metavar="S",
-        help="first second shown",
+        help="begin at this second",
     )
-    parser.add_argument("--to", dest="stop", type=_seconds, metavar="S", help="last second shown")
+    parser.add_argument("--to", dest="stop", type=_seconds, metavar="S", help="end at this second")
     parser.add_argument(
         "--height", type=int, default=512, metavar="N", help="of exported pictures (default: 512)"
     )

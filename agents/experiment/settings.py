@@ -151,7 +151,7 @@ class Validation:
     )
     levels: tuple[str, ...] = Field(
         default=(),
-        description='each is played until it is cleared: names, "named" for all named rounds, '
+        description='each is played until it is cleared: names, "named" for all named levels, '
         'files or seeds ("seeds:9000-9019"); without any: whole games as in the training',
     )
     episodes: Count = Field(default=20, description="episodes of each level, one per seed")
@@ -175,7 +175,7 @@ class Evaluation:
         default=("games",),
         description="games: whole ones as in the training; the others play levels until they are "
         "cleared: training: those of the training; test: generated from the test seeds; named: "
-        "the named rounds",
+        "the named levels",
     )
     episodes: Count = Field(default=100, description="whole games, one per seed")
     level_episodes: Count = Field(default=10, description="episodes of each level, one per seed")

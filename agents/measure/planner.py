@@ -28,7 +28,7 @@ DISCOUNT = 0.995
 
 
 class Planner:
-    """Plays the best of a few plans in each of ``worlds``; it finds it by playing all in copies.
+    """Plays in each of ``worlds`` the best of a few plans; it tries all of them in copies.
 
     A plan catches the next ball at a certain place of the paddle, and later ones at its middle.
     ``worlds`` must be native and have the observation ``vector``.
@@ -59,7 +59,7 @@ class Planner:
         observations, _ = scouts.spread(self._worlds.snapshot(world))
         count = len(OFFSETS)
         values = np.zeros(count)
-        # Scouts whose episode goes on; scouts that still wait for the next ball to land.
+        # Scouts that still play, and scouts whose next ball has not landed yet.
         playing, waiting = np.ones(count, np.bool_), np.ones(count, np.bool_)
         landed = np.full(count, PLAYED)
         taken = []
@@ -122,7 +122,7 @@ class Planner:
 
 
 def _between_walls(x: NDArray[Any]) -> NDArray[Any]:
-    """Return where walls reflect a ball to that would be at x without them."""
+    """Return the positions of balls that would be at x if the walls did not reflect them."""
     width = FIELD_WIDTH - 2 * BALL_RADIUS
     place = np.mod(x - BALL_RADIUS, 2 * width)
     return BALL_RADIUS + np.minimum(place, 2 * width - place)

@@ -10,7 +10,7 @@ from ...envs.levels.plan import TEST_SEEDS, campaign_names, check_boss, seed_ran
 from ..experiment.errors import SettingsError
 from ..experiment.settings import Experiment
 
-# Stands for all named rounds of the experiment's game.
+# Stands for all named levels of the experiment's game.
 NAMED = "named"
 
 
@@ -48,7 +48,7 @@ class Suite:
 def make_suites(experiment: Experiment) -> dict[str, Suite]:
     """Return the suites of an experiment's evaluation by their names.
 
-    An agent that trains on the campaign trains on the named rounds: its suite ``training`` would
+    An agent that trains on the campaign trains on the named levels: its suite ``training`` would
     repeat ``named``, and is left out. Raises `SettingsError` if a level of the experiment does not
     exist.
     """
@@ -75,7 +75,7 @@ def find_starts(
     """Return how an episode begins on each of some levels.
 
     Args:
-        experiment: says which named rounds its game has, and how difficult generated levels are.
+        experiment: says which named levels its game has, and how difficult generated levels are.
         levels: as the environment's keyword ``levels``, or `NAMED`.
         at_most: how many seeds of each range are taken, evenly spread; None: all.
 

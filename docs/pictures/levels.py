@@ -18,13 +18,13 @@ DIFFICULTIES = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 
 
 def sheet(starts: list[dict[str, Any]], columns: int) -> NDArray[np.uint8]:
-    """Return pictures of how episodes begin with some reset options, side by side in rows."""
+    """Return the first pictures of episodes that begin with these options, in rows."""
     env = gym.make("arkanoid:Arkanoid-v0", render_mode="rgb_array")
     frames = []
     for options in starts:
         env.reset(seed=0, options=options)
         frame: Any = env.render()
-        # Every other pixel, without the score line and what lies below the paddle.
+        # Half the resolution, without the score line and the space below the paddle.
         frames.append(frame[48:460:2, ::2])
     env.close()
     frames += [np.zeros_like(frames[0])] * (-len(frames) % columns)

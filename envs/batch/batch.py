@@ -61,7 +61,9 @@ class Batch:
 
     Attributes:
         worlds: the state, `World` records [n].
-        plan: the levels; rules: `Rules` [1]; levels: `LevelEntry` records.
+        plan: the levels, and which of them follow each other.
+        rules: of all worlds.
+        levels: those of the plan that are played in turn.
         commands: float64 [n, 2], to be filled before `step`.
         outcomes: `Outcome` records [n], of the latest step.
         observer: what writes the observations.
@@ -199,13 +201,13 @@ class Batch:
         if options:
             choose_starts(self.worlds, mask, options, self.config, self.plan)
         for block in self._all_blocks():
-            block.reset(mask[block.index])
-            block.observe(mask[block.index])
+            block.reset(mask[block.where])
+            block.observe(mask[block.where])
         for listener in self.listeners:
             listener.reset(mask)
 
     def check_over(self, worlds: NDArray[np.uint8]) -> None:
-        """Raise a ValueError if an episode is over in worlds (bytes) where this mode has none such."""
+        """Raise a ValueError if worlds (bytes) have an episode over, which this mode forbids."""
         if self.autoreset is Autoreset.SAME_STEP and worlds.view(World)["done"].any():
             raise ValueError(
                 "an episode is over in the snapshot, and with autoreset_mode='SameStep' the next "
@@ -233,7 +235,7 @@ class Batch:
     def observe(self, mask: NDArray[np.bool_]) -> None:
         """Observe the worlds of a mask, bool [n], as they are."""
         for block in self._all_blocks():
-            block.observe(mask[block.index])
+            block.observe(mask[block.where])
 
     def close(self) -> None:
         """End the threads; a later step starts them again."""
@@ -265,8 +267,8 @@ class Batch:
         outcomes = block.outcomes
         over = block.worlds["done"] != 0
         ended = outcomes[over]
-        self.finals[block.index][over] = ended
-        self.final_observations[block.index][over] = self.observations[block.index][over]
+        self.finals[block.where][over] = ended
+        self.final_observations[block.where][over] = self.observations[block.where][over]
         block.reset(over)
         block.observe(over)
         for field in ("reward", "terminated", "truncated"):
@@ -280,7 +282,7 @@ class Batch:
         game = worlds, self.rules, self.levels, outcomes
         next_step = self.autoreset is Autoreset.NEXT_STEP
         return Block(
-            index=index,
+            where=index,
             worlds=worlds,
             outcomes=outcomes,
             play=partial(step_worlds, *game, self.commands[index], next_step),

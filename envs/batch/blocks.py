@@ -7,24 +7,23 @@ is still there when it is observed.
 import itertools
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..observe.protocol import Mask, Observe
 from ..state import Outcomes, Worlds
 
-# By the kind of observation. Starting a thread's work takes some 60 µs per step: with fewer worlds
-# it gains less than that.
+# By the kind of observation. To start a thread's work takes some 60 µs per step, and a thread with
+# fewer worlds gains less than that.
 WORLDS_PER_THREAD = {"vector": 1024, "grid": 512, "rgb": 128}
-# So many worlds and their vectors fit into a cache of 1 MB; smaller blocks gain nothing more.
+# What a step touches of this number of worlds and their vectors fits into a cache of 1 MB.
 WORLDS_PER_BLOCK = 512
 
 
-@dataclass(frozen=True, slots=True)
-class Block:
+class Block(NamedTuple):
     """A block of a batch's worlds, and the kernels together with the arrays that they take.
 
     Attributes:
-        index: of its worlds in the batch.
+        where: its worlds are in the batch.
         worlds, outcomes: those of the block.
         play: plays one decision in each world, and returns how many episodes are over.
         reset: begins a new episode in the worlds of a mask, bool [n].
@@ -32,7 +31,7 @@ class Block:
         everywhere: the mask of all its worlds.
     """
 
-    index: slice
+    where: slice
     worlds: Worlds
     outcomes: Outcomes
     play: Callable[[], int]
@@ -43,7 +42,8 @@ class Block:
 
 def thread_count(num_worlds: int, observation: str) -> int:
     """Return how many threads pay for a number of worlds and a kind of observation."""
-    return min(os.cpu_count() or 1, max(1, num_worlds // WORLDS_PER_THREAD[observation]))
+    worth = num_worlds // WORLDS_PER_THREAD[observation]
+    return min(os.cpu_count() or 1, worth) if worth > 1 else 1
 
 
 def divide(num_worlds: int, threads: int) -> list[list[slice]]:

@@ -11,9 +11,9 @@ from ..state import World
 from .batch import Batch
 from .replays import GameStart, Replay, Result
 
-# The checksum runs over the state each time so many decisions were played ...
+# After this number of decisions, again and again, the checksum runs over the state ...
 CHECK_EVERY = 16
-# ... and its value is noted each time so many were played.
+# ... and after this number its value is noted.
 NOTE_EVERY = 256
 # What it runs over. These fields are all that a game's course depends on, but for a few counters.
 _CHECKED = (
@@ -167,7 +167,7 @@ class Recorder:
         self._over = over
         decisions = len(self._commands) // self._command.nbytes
         if over:
-            # The last state may be gone already, so no checksum runs over it; the result stands for it.
+            # The last state may be gone already: the result takes the place of its checksum.
             self.finished = self._replay(batch.finals[world] if begun else batch.outcomes[world])
         elif decisions % CHECK_EVERY == 0:
             self._check(decisions)

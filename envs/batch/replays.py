@@ -7,7 +7,8 @@ random generator when the game began, and the player's command in each decision.
     4 bytes  length of what is next, unsigned, little-endian
     JSON     compressed with zlib: everything but the commands, see `Replay`
     commands compressed with zlib: one byte per command, its place in the JSON's ``palette`` of
-             [velocity, fire]; or, where ``palette`` is null, float64 [decisions, 2] as sixteen planes of bytes
+             [velocity, fire]; or, where ``palette`` is null, float64 [decisions, 2] as sixteen
+             planes of bytes
 """
 
 import json
@@ -125,8 +126,8 @@ class Replay:
 
         Raises:
             OSError: it can't be read.
-            ValueError: it is not a replay, corrupt, or of another version of the format or the rules;
-                the message names the file.
+            ValueError: it is not a replay, corrupt, or of another version of the format or the
+                rules; the message names the file.
         """
         try:
             return cls.from_bytes(Path(path).read_bytes())

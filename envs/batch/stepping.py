@@ -20,7 +20,8 @@ from ..state import (
 
 # How many worlds ahead memory is asked for: a decision takes about as long as it takes to come.
 _AHEAD = 2
-_EVERY_STEP = World.fields["enemy_x"][1]  # bytes of a world that a step touches, whatever happens
+# The bytes of a world that a step touches, whatever happens.
+_EVERY_STEP = World.fields["enemy_x"][1]  # type: ignore[index]
 _OUTCOME = Outcome.itemsize
 
 

@@ -1,10 +1,9 @@
 """The background and the bricks: copied from finished pixels, where the picture is out of date."""
 
-from typing import Any
-
 from ...physics.kernels import inlined, kernel
 from ..game.bricks import hits_needed
 from ..rules import CELLS, COLUMNS, ROWS, SILVER
+from ..state import WorldRecord
 from .canvas import DrawnRecord, Lines, copy_bytes
 from .scenery import DAMAGED, DAMAGES, Scenery
 
@@ -35,7 +34,7 @@ def begin_picture(lines: Lines, drawn: DrawnRecord, scenery: Scenery) -> None:
 
 
 @inlined
-def erase_things(lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def erase_things(lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
     """Draw background and bricks again in the boxes of the things that were drawn."""
     channels = scenery.palette.shape[1]
     for index in range(drawn.boxes):
@@ -49,7 +48,7 @@ def erase_things(lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any)
 
 @inlined
 def _restore_bricks(
-    lines: Lines, scenery: Scenery, world: Any, left: int, top: int, right: int, bottom: int
+    lines: Lines, scenery: Scenery, world: WorldRecord, left: int, top: int, right: int, bottom: int
 ) -> None:
     """Draw the cells that have pixels in a box; its right and bottom are excluded."""
     view = scenery.views[0]
@@ -64,7 +63,7 @@ def _restore_bricks(
 
 
 @kernel
-def _draw_cell(lines: Lines, scenery: Scenery, world: Any, row: int, column: int) -> None:
+def _draw_cell(lines: Lines, scenery: Scenery, world: WorldRecord, row: int, column: int) -> None:
     """Draw a cell of the lattice: copy the pixels of its look."""
     view = scenery.views[0]
     cell = row * COLUMNS + column
@@ -77,7 +76,7 @@ def _draw_cell(lines: Lines, scenery: Scenery, world: Any, row: int, column: int
 
 
 @inlined
-def draw_bricks(lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def draw_bricks(lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
     """Draw the cells that look different from the picture."""
     # How damaged silver looks depends on the hits that it needs in this round.
     if drawn.round_number == world.round_number and not _bricks_differ(drawn, world):
@@ -96,7 +95,7 @@ def draw_bricks(lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any) 
 
 
 @inlined
-def _bricks_differ(drawn: DrawnRecord, world: Any) -> bool:
+def _bricks_differ(drawn: DrawnRecord, world: WorldRecord) -> bool:
     """Return whether any brick may look different from the picture."""
     difference = 0
     for cell in range(CELLS):

@@ -1,7 +1,6 @@
 """The player's opponents: enemies, the boss and its shards, in the shapes of their colliders."""
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -9,7 +8,7 @@ from ...physics.kernels import inlined, kernel
 from ..game.boss import MOUTH
 from ..game.shapes import BOSS_SHAPE, ENEMY_SHAPE, SHARD_SHAPE
 from ..rules import BOSS_HITS, BOSS_X, BOSS_Y, FIELD_HEIGHT, MAX_ENEMIES, MAX_SHARDS
-from ..state import ABSENT
+from ..state import ABSENT, RulesRecord, WorldRecord
 from .canvas import DrawnRecord, note_shape
 from .palette import (
     BOSS_BROW,
@@ -70,7 +69,7 @@ BOSS_CRACKS = np.array(
 
 @inlined
 def draw_enemies(
-    image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any
+    image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord, rules: RulesRecord
 ) -> None:
     """Draw the enemies; what is still above the gate is hidden."""
     if world.enemies == 0:
@@ -89,7 +88,13 @@ def draw_enemies(
 
 @inlined
 def _draw_enemy(
-    image: Image, scenery: Scenery, world: Any, rules: Any, enemy: int, x: float, y: float
+    image: Image,
+    scenery: Scenery,
+    world: WorldRecord,
+    rules: RulesRecord,
+    enemy: int,
+    x: float,
+    y: float,
 ) -> None:
     """Draw an enemy at x, y in pixels; it looks where it goes."""
     palette, scale = scenery.palette, scenery.views[0].scale
@@ -108,7 +113,9 @@ def _draw_enemy(
 
 
 @inlined
-def draw_boss(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any) -> None:
+def draw_boss(
+    image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord, rules: RulesRecord
+) -> None:
     """Draw the boss, if there is one; each hit makes it redder and adds a crack."""
     if world.boss_hits == 0:
         return
@@ -174,7 +181,9 @@ def _draw_stroke(
 
 
 @inlined
-def draw_shards(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any) -> None:
+def draw_shards(
+    image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord, rules: RulesRecord
+) -> None:
     """Draw the shards that the boss has thrown."""
     if world.shards == 0:
         return

@@ -1,8 +1,7 @@
 """A world drawn into a picture, layer by layer, from the back to the front."""
 
-from typing import Any
-
 from ...physics.kernels import kernel
+from ..state import RulesRecord, WorldRecord
 from .bricks import begin_picture, draw_bricks, erase_things
 from .canvas import DrawnRecord, Lines
 from .foes import draw_boss, draw_enemies, draw_shards
@@ -15,7 +14,12 @@ from .walls import draw_exit, draw_gates
 
 @kernel
 def draw_frame(
-    picture: Image, lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any
+    picture: Image,
+    lines: Lines,
+    drawn: DrawnRecord,
+    scenery: Scenery,
+    world: WorldRecord,
+    rules: RulesRecord,
 ) -> None:
     """Make a picture show a world; only what has changed is drawn.
 

@@ -1,9 +1,8 @@
 """The score line above the field."""
 
-from typing import Any
-
 from ...physics.kernels import inlined
 from ..rules import FIELD_HEIGHT, NO_POWER
+from ..state import WorldRecord
 from .canvas import DrawnRecord, Lines, copy_bytes
 from .font import count_digits, draw_number, text_step
 from .palette import GRIP_LIT, PADDLE_LIT, PADDLE_SHADED, VALUE
@@ -33,7 +32,7 @@ POWER_X = 10.55  # the middle of the capsule that shows the power
 
 @inlined
 def draw_header(
-    image: Image, lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: Any
+    image: Image, lines: Lines, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord
 ) -> None:
     """Draw the score line again if it is out of date."""
     if (
@@ -59,7 +58,7 @@ def draw_header(
 
 
 @inlined
-def _draw_values(image: Image, view: ViewRecord, palette: Palette, world: Any) -> None:
+def _draw_values(image: Image, view: ViewRecord, palette: Palette, world: WorldRecord) -> None:
     """Draw the numbers of the score line, and the lives as small paddles."""
     scale = view.scale
     top = view.bottom - VALUE_TOP * scale

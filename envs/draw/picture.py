@@ -1,12 +1,11 @@
 """A picture of a world, as a fresh array."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import check_integer
 from ..config import MAX_SIZE
+from ..state import SharedRules, Worlds
 from .canvas import Drawn
 from .frame import draw_frame
 from .scenery import make_scenery
@@ -16,8 +15,8 @@ DEFAULT_HEIGHT = 512  # pixels: 32 per brick width
 
 
 def draw_world(
-    worlds: Any,
-    rules: Any,
+    worlds: Worlds,
+    rules: SharedRules,
     index: int,
     height: int = DEFAULT_HEIGHT,
     width: int | None = None,

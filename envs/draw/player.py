@@ -1,7 +1,5 @@
 """What the player has: the paddle with its powers, balls and beams; and the capsules."""
 
-from typing import Any
-
 from ...physics.kernels import inlined, kernel
 from ..rules import (
     BALL_RADIUS,
@@ -17,7 +15,7 @@ from ..rules import (
     NO_CAPSULE,
     PADDLE_Y,
 )
-from ..state import ABSENT
+from ..state import ABSENT, RulesRecord, WorldRecord
 from .canvas import DrawnRecord, note_box, note_shape
 from .font import GLYPH_WIDTH, draw_glyph
 from .palette import (
@@ -62,7 +60,9 @@ _LETTERS = tuple(ord(letter) for letter in CAPSULE_LETTERS)
 
 
 @inlined
-def draw_paddle(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, rules: Any) -> None:
+def draw_paddle(
+    image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord, rules: RulesRecord
+) -> None:
     """Draw the paddle in its collider's shape; the colours of ends and body show its power."""
     view, palette = scenery.views[0], scenery.palette
     shape, edges = rules.shapes[world.paddle_shape], rules.edges
@@ -96,7 +96,7 @@ def draw_paddle(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any, 
 
 
 @inlined
-def draw_balls(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def draw_balls(image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
     """Draw the balls; in large pictures with a rim, and a highlight at the upper left."""
     view, palette = scenery.views[0], scenery.palette
     radius = BALL_RADIUS * view.scale
@@ -114,7 +114,7 @@ def draw_balls(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -
 
 
 @inlined
-def draw_beams(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def draw_beams(image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
     """Draw the laser's beams, bright in the middle."""
     view, palette = scenery.views[0], scenery.palette
     across, along = BEAM_WIDTH / 2 * view.scale, BEAM_HEIGHT / 2 * view.scale
@@ -132,7 +132,9 @@ def draw_beams(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -
 
 
 @inlined
-def draw_falling_capsule(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def draw_falling_capsule(
+    image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord
+) -> None:
     """Draw the falling capsule, if there is one."""
     if world.capsule == NO_CAPSULE:
         return

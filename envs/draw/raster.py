@@ -12,6 +12,7 @@ import math
 from typing import Any, NamedTuple, TypeAlias
 
 from ...physics.kernels import kernel
+from ...physics.shapes.records import Edges, ShapeRecord
 
 Image: TypeAlias = Any  # uint8 [height, width, channels]
 Colour: TypeAlias = Any  # float64 [channels], from 0 to 255
@@ -212,7 +213,7 @@ def area_beyond_edge(
 
 @kernel
 def convex_coverage(
-    shape: Any, edges: Any, x: float, y: float, scale: float, row: int, column: int
+    shape: ShapeRecord, edges: Edges, x: float, y: float, scale: float, row: int, column: int
 ) -> float:
     """Return the fraction of a pixel inside a bounded shape without rounding.
 
@@ -250,7 +251,7 @@ class Span(NamedTuple):
 
 
 @kernel
-def row_span(shape: Any, edges: Any, x: float, y: float, scale: float, row: int) -> Span:
+def row_span(shape: ShapeRecord, edges: Edges, x: float, y: float, scale: float, row: int) -> Span:
     """Return the `Span` of a row of pixels; the arguments are those of `convex_coverage`."""
     begin, left, right, end, height = math.inf, -math.inf, math.inf, -math.inf, 0.0
     for index in range(shape.first, shape.first + shape.count):
@@ -275,8 +276,8 @@ def row_span(shape: Any, edges: Any, x: float, y: float, scale: float, row: int)
 @kernel
 def span_coverage(
     span: Span,
-    shape: Any,
-    edges: Any,
+    shape: ShapeRecord,
+    edges: Edges,
     x: float,
     y: float,
     scale: float,
@@ -292,8 +293,8 @@ def span_coverage(
 @kernel
 def fill_convex(
     image: Image,
-    shape: Any,
-    edges: Any,
+    shape: ShapeRecord,
+    edges: Edges,
     x: float,
     y: float,
     scale: float,

@@ -43,7 +43,16 @@ from .raster import (
     last_pixel,
     overlap,
 )
-from .view import EXIT_BOTTOM, EXIT_TOP, GATE_WIDTH, WALL_WIDTH, ViewRecord, make_view, to_pixels
+from .view import (
+    EXIT_BOTTOM,
+    EXIT_TOP,
+    GATE_WIDTH,
+    WALL_WIDTH,
+    ViewRecord,
+    Views,
+    make_view,
+    to_pixels,
+)
 
 Palette: TypeAlias = Any  # float64 [colours, channels]
 Looks: TypeAlias = Any  # uint8 [LOOKS, rows, columns, channels], the lattice full of each look
@@ -88,7 +97,7 @@ class Scenery(NamedTuple):
             each look.
     """
 
-    views: Any
+    views: Views
     palette: NDArray[np.float64]
     background: NDArray[np.uint8]
     looks: NDArray[np.uint8]
@@ -232,9 +241,9 @@ def _draw_labels(painter: _Painter) -> None:
 
 
 @kernel
-def draw_looks(looks: Looks, view: ViewRecord, palette: Palette) -> None:
+def draw_looks(looks: Looks, views: Views, palette: Palette) -> None:
     """Fill the lattice with bricks of each look."""
-    rows, columns = view[0].rows, view[0].columns
+    rows, columns = views[0].rows, views[0].columns
     for look in range(1, LOOKS):
         for row in range(ROWS):
             for column in range(COLUMNS):
@@ -246,7 +255,7 @@ def draw_looks(looks: Looks, view: ViewRecord, palette: Palette) -> None:
                     float(rows[row] - rows[0]),
                     float(columns[column + 1] - columns[0]),
                     float(rows[row + 1] - rows[0]),
-                    view[0].scale,
+                    views[0].scale,
                 )
 
 

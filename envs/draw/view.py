@@ -5,6 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from ...physics.kernels.layouts import record_dtype
 from ..rules import BRICK_HEIGHT, COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, LATTICE_TOP, ROWS
 
 # Around the field; lengths in brick widths.
@@ -21,25 +22,23 @@ EXIT_TOP = 2.5
 HEADER_SCALE = 8.0
 
 # Lengths in pixels, x to the right and y down.
-View = np.dtype(
-    (
-        np.record,
-        [
-            ("scale", np.float64),  # pixels per brick width
-            ("left", np.float64),  # x of the field's left edge
-            ("bottom", np.float64),  # y of the field's lower edge
-            ("header", np.int64),  # 1: there is a score line
-            # The pixels at which the cells of the lattice begin, rounded: no pixel belongs to two
-            # cells, and bricks are crisp.
-            ("columns", np.int64, (COLUMNS + 1,)),
-            ("rows", np.int64, (ROWS + 1,)),
-        ],
-    )
+View = record_dtype(
+    [
+        ("scale", np.float64),  # pixels per brick width
+        ("left", np.float64),  # x of the field's left edge
+        ("bottom", np.float64),  # y of the field's lower edge
+        ("header", np.int64),  # 1: there is a score line
+        # The pixels at which the cells of the lattice begin, rounded: no pixel belongs to two
+        # cells, and bricks are crisp.
+        ("columns", np.int64, (COLUMNS + 1,)),
+        ("rows", np.int64, (ROWS + 1,)),
+    ]
 )
 ViewRecord: TypeAlias = Any  # one `View`
+Views: TypeAlias = Any  # `View` [1]
 
 
-def make_view(height: int, width: int) -> Any:
+def make_view(height: int, width: int) -> Views:
     """Return where the field lies in a picture, `View` [1]: centred, as large as fits."""
     view = np.zeros(1, View)
     record = view[0]

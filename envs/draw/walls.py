@@ -1,10 +1,8 @@
 """What moves in the walls: the gates in the ceiling, and the exit on the right."""
 
-from typing import Any
-
 from ...physics.kernels import inlined
 from ..rules import FIELD_HEIGHT, FIELD_WIDTH, GATE_TICKS, GATE_X, GATES, MAX_ENEMIES
-from ..state import ENTERING
+from ..state import ENTERING, WorldRecord
 from .canvas import DrawnRecord, note_box
 from .palette import ARROW, LAMP, OPENING
 from .raster import Image, draw_line, fill_rectangle
@@ -18,7 +16,7 @@ MARK_HEIGHT = 0.2
 
 
 @inlined
-def gate_opening(world: Any, gate: int) -> float:
+def gate_opening(world: WorldRecord, gate: int) -> float:
     """Return how far a gate in the ceiling is open, from 0 to 1."""
     for enemy in range(MAX_ENEMIES):
         enters = world.enemy_state[enemy] == ENTERING
@@ -30,7 +28,7 @@ def gate_opening(world: Any, gate: int) -> float:
 
 
 @inlined
-def draw_gates(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def draw_gates(image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
     """Draw the gates in the ceiling that are not closed."""
     if world.enemies == 0 and world.enemy_wait >= GATE_TICKS:
         return
@@ -58,7 +56,7 @@ def draw_gates(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -
 
 
 @inlined
-def draw_exit(image: Image, drawn: DrawnRecord, scenery: Scenery, world: Any) -> None:
+def draw_exit(image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
     """Draw the open exit in the right wall: arrows that point out."""
     if world.exit_open == 0:
         return

@@ -24,8 +24,8 @@ from .enemies import destroy_enemy, meet_enemies
 from .serve import catch_ball
 from .shapes import BALL_SHAPE, BOSS, BRICK, CEILING, ENEMY, NOTHING, PADDLE, WALL
 
-# A ball squeezed between paddle and wall moves up or down along the paddle's slanted end. Each round
-# halves the overlap that is left: after so many nothing is left of any overlap.
+# A ball squeezed between paddle and wall moves up or down along the paddle's slanted end. Each
+# round halves the overlap, so that nothing is left of it in the end.
 FREEING_ROUNDS = 64
 
 

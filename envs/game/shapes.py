@@ -1,4 +1,4 @@
-"""The colliders of the game, their places in the one table of shapes, and names for what is met."""
+"""The colliders of the game, their places in the table of shapes, and what a ball can meet."""
 
 import math
 from typing import Any
@@ -89,7 +89,7 @@ def shard_collider() -> Convex:
 
 
 def enemy_colliders() -> list[Collider]:
-    """Return the colliders of the kinds of enemies; none is wider than a gap of one brick."""
+    """Return the colliders of the kinds of enemies; all fit through a gap of one brick."""
     hexagon = [(0.0, -0.3), (0.32, -0.12), (0.32, 0.16), (0.0, 0.36), (-0.32, 0.16), (-0.32, -0.12)]
     return [
         Convex([(0.0, -0.36), (0.36, 0.24), (-0.36, 0.24)]),

@@ -18,10 +18,9 @@ class Part(NamedTuple):
     meaning: str
 
 
-def slices(parts: Sequence[Part]) -> dict[str, slice]:
-    """Return the slice of each part on an observation's first axis, one after the other."""
-    layout: dict[str, slice] = {}
-    start = 0
+def slices(parts: Sequence[Part], start: int = 0) -> dict[str, slice]:
+    """Return the slices of parts on an observation's first axis, one after the other."""
+    layout = {}
     for part in parts:
         layout[part.name] = slice(start, start + part.length)
         start += part.length

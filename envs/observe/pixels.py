@@ -4,8 +4,8 @@ Channels come first, as a network of convolutions takes them: red, green and blu
 alone. Each is, bit for bit, a channel of the picture that `render` gives for the same size. In a
 stack the latest picture is the last; the first picture of an episode fills all places.
 
-A stack is a window that slides over a longer row of pictures, by one place per step, so that pictures
-are moved only when it has reached the row's end.
+A stack is a window that slides over a longer row of pictures, by one place per step. Pictures are
+moved only when it has reached the row's end.
 """
 
 from copy import copy

@@ -94,9 +94,9 @@ EXTRA_PARTS = (
     Part("shard_motion", 2, "velocity to the right and up (full speed)"),
 )
 _CORE = slices(CORE_PARTS)
-_FULL = slices(CORE_PARTS + EXTRA_PARTS)
 CORE_PLANES = _CORE["ball_held"].stop
-FULL_PLANES = _FULL["shard_motion"].stop
+_EXTRAS = slices(EXTRA_PARTS, CORE_PLANES)
+FULL_PLANES = _EXTRAS["shard_motion"].stop
 
 _STATUS = (
     *("speed_stage", "idle_clock", "decision_clock", "lives"),
@@ -118,15 +118,15 @@ _PADDLE_MOTION = _CORE["paddle_motion"].start * PLANE
 _BALL = _CORE["ball"].start * PLANE
 _BALL_MOTION = _CORE["ball_motion"].start * PLANE
 _BALL_HELD = _CORE["ball_held"].start * PLANE
-_CAPSULE = _FULL["capsule"].start * PLANE
-_BEAM = _FULL["beam"].start * PLANE
-_EXIT = _FULL["exit"].start * PLANE
-_GATE = _FULL["gate"].start * PLANE
-_ENEMY = _FULL["enemy"].start * PLANE
-_ENEMY_MOTION = _FULL["enemy_motion"].start * PLANE
-_BOSS = _FULL["boss"].start * PLANE
-_SHARD = _FULL["shard"].start * PLANE
-_SHARD_MOTION = _FULL["shard_motion"].start * PLANE
+_CAPSULE = _EXTRAS["capsule"].start * PLANE
+_BEAM = _EXTRAS["beam"].start * PLANE
+_EXIT = _EXTRAS["exit"].start * PLANE
+_GATE = _EXTRAS["gate"].start * PLANE
+_ENEMY = _EXTRAS["enemy"].start * PLANE
+_ENEMY_MOTION = _EXTRAS["enemy_motion"].start * PLANE
+_BOSS = _EXTRAS["boss"].start * PLANE
+_SHARD = _EXTRAS["shard"].start * PLANE
+_SHARD_MOTION = _EXTRAS["shard_motion"].start * PLANE
 
 # The planes of what moves begin here. Nearly all of their cells are empty: those that are not are
 # remembered, and erased before the next observation. There are never more than these: a paddle in
@@ -143,7 +143,7 @@ class GridObserver:
         """Make the arrays; games without capsules and enemies have no planes for them."""
         full = config.capsules or config.enemies
         shape = (FULL_PLANES if full else CORE_PLANES, GRID_ROWS, COLUMNS)
-        self.layout = dict(_FULL if full else _CORE)
+        self.layout = _CORE | _EXTRAS if full else dict(_CORE)
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, shape, np.float32)
         self.observations: NDArray[np.float32] = np.zeros((num_worlds, *shape), np.float32)

@@ -109,9 +109,9 @@ EXTRA_PARTS = (
     Part("shard_vy", MAX_SHARDS, "y velocity (full speed)"),
 )
 _CORE = slices(CORE_PARTS)
-_FULL = slices(CORE_PARTS + EXTRA_PARTS)
 CORE_LENGTH = _CORE["bricks"].stop
-FULL_LENGTH = _FULL["shard_vy"].stop
+_EXTRAS = slices(EXTRA_PARTS, CORE_LENGTH)
+FULL_LENGTH = _EXTRAS["shard_vy"].stop
 
 _PADDLE = _CORE["paddle"].start
 _IN_PLAY = _CORE["ball_in_play"].start
@@ -127,30 +127,30 @@ _DECISIONS = _CORE["decision_clock"].start
 _LIVES = _CORE["lives"].start
 _BRICKS = _CORE["bricks"].start
 
-_POWER = _FULL["power"].start
-_EXIT = _FULL["exit_open"].start
-_CAPSULE = _FULL["capsule"].start
-_CAPSULE_X = _FULL["capsule_x"].start
-_CAPSULE_Y = _FULL["capsule_y"].start
-_BEAM_WAIT = _FULL["beam_wait"].start
-_BEAM = _FULL["beam_in_play"].start
-_BEAM_X = _FULL["beam_x"].start
-_BEAM_Y = _FULL["beam_y"].start
-_GATE = _FULL["gate_open"].start
-_ENEMY_WAIT = _FULL["enemy_wait"].start
-_ENEMY = _FULL["enemy_in_play"].start
-_ENEMY_X = _FULL["enemy_x"].start
-_ENEMY_Y = _FULL["enemy_y"].start
-_ENEMY_VX = _FULL["enemy_vx"].start
-_ENEMY_VY = _FULL["enemy_vy"].start
-_ENEMY_KIND = _FULL["enemy_kind"].start
-_BOSS = _FULL["boss"].start
-_SHARD_WAIT = _FULL["shard_wait"].start
-_SHARD = _FULL["shard_in_play"].start
-_SHARD_X = _FULL["shard_x"].start
-_SHARD_Y = _FULL["shard_y"].start
-_SHARD_VX = _FULL["shard_vx"].start
-_SHARD_VY = _FULL["shard_vy"].start
+_POWER = _EXTRAS["power"].start
+_EXIT = _EXTRAS["exit_open"].start
+_CAPSULE = _EXTRAS["capsule"].start
+_CAPSULE_X = _EXTRAS["capsule_x"].start
+_CAPSULE_Y = _EXTRAS["capsule_y"].start
+_BEAM_WAIT = _EXTRAS["beam_wait"].start
+_BEAM = _EXTRAS["beam_in_play"].start
+_BEAM_X = _EXTRAS["beam_x"].start
+_BEAM_Y = _EXTRAS["beam_y"].start
+_GATE = _EXTRAS["gate_open"].start
+_ENEMY_WAIT = _EXTRAS["enemy_wait"].start
+_ENEMY = _EXTRAS["enemy_in_play"].start
+_ENEMY_X = _EXTRAS["enemy_x"].start
+_ENEMY_Y = _EXTRAS["enemy_y"].start
+_ENEMY_VX = _EXTRAS["enemy_vx"].start
+_ENEMY_VY = _EXTRAS["enemy_vy"].start
+_ENEMY_KIND = _EXTRAS["enemy_kind"].start
+_BOSS = _EXTRAS["boss"].start
+_SHARD_WAIT = _EXTRAS["shard_wait"].start
+_SHARD = _EXTRAS["shard_in_play"].start
+_SHARD_X = _EXTRAS["shard_x"].start
+_SHARD_Y = _EXTRAS["shard_y"].start
+_SHARD_VX = _EXTRAS["shard_vx"].start
+_SHARD_VY = _EXTRAS["shard_vy"].start
 
 # How many rows ahead memory is asked for, and the parts of a row, in bytes: without the bricks,
 # few of which change.
@@ -168,7 +168,7 @@ class VectorObserver:
         """Make the array; games without capsules and enemies have no numbers for them."""
         full = config.capsules or config.enemies
         length = FULL_LENGTH if full else CORE_LENGTH
-        self.layout = dict(_FULL if full else _CORE)
+        self.layout = _CORE | _EXTRAS if full else dict(_CORE)
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, (length,), np.float32)
         self.observations: NDArray[np.float32] = zeros_in_lines((num_worlds, length), np.float32)
@@ -236,13 +236,13 @@ def _prefetch_row(world: WorldRecord, rows: Any, index: int) -> None:
 @inlined
 def _has_capsules(world: WorldRecord) -> bool:
     """Tell whether there is a power, a falling capsule, a beam or an open exit."""
-    return world.power + world.capsule + world.beams + world.exit_open > 0
+    return bool(world.power + world.capsule + world.beams + world.exit_open > 0)
 
 
 @inlined
 def _has_enemies(world: WorldRecord) -> bool:
     """Tell whether there is an enemy or the boss."""
-    return world.enemies + world.boss_hits > 0
+    return bool(world.enemies + world.boss_hits > 0)
 
 
 @inlined

@@ -20,7 +20,7 @@ from ..levels.generator import MAX_SEED
 from ..rules import IDLE_TICKS, TICKS_PER_SECOND
 from .controls import Controls, Key
 
-# So long the fire button does nothing after a game: whoever still hammers it sees the score first.
+# After a game the fire button does nothing for so long: a player who hammers it sees the score.
 OVER_TICKS = 40
 TITLE_TICKS = 90  # how long the title of a new round is shown
 WARNING_TICKS = 15 * TICKS_PER_SECOND  # the warning comes so long before the game is cut

@@ -31,12 +31,12 @@ def import_pygame() -> Any:
             import pygame
     except ImportError as error:
         raise DependencyNotInstalled(
-            'a window needs pygame-ce, which is not installed; run `pip install "arkanoid[play]"`'
+            "a window needs pygame-ce, which is not installed; run `pip install pygame-ce`"
         ) from error
     if not hasattr(pygame, "Window"):
         raise DependencyNotInstalled(
             f"a window needs pygame-ce 2.5 or newer, not pygame {pygame.version.ver}; run "
-            '`pip uninstall pygame` and then `pip install --force-reinstall "arkanoid[play]"`'
+            "`pip uninstall pygame` and then `pip install --force-reinstall pygame-ce`"
         )
     return pygame
 

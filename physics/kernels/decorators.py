@@ -76,7 +76,9 @@ def _compile(function: F, **options: bool) -> F:
         return function
     compiled: F = _njit(function, **_ALWAYS, **WITHOUT_C_ENTRY, **options)
     compile_once_for_constants(compiled)
-    folder = writable_folder(Path(function.__code__.co_filename), compiler_state())
+    # The options are a part of the key: Numba's own does not hold them.
+    compiler = f"{compiler_state()} {sorted(options.items())}"
+    folder = writable_folder(Path(function.__code__.co_filename), compiler)
     if folder is not None:
         cache_in(folder, compiled)
     return compiled

@@ -9,7 +9,7 @@ CACHE_VARIABLE = "ARKANOID_CACHE_DIR"
 
 def say_compiling() -> None:
     """Say that the wait is for the compiler."""
-    _say_once("compiling kernels for this machine (once; up to 20 s) ...")
+    _say_once("compiling kernels for this machine (once; about half a minute) ...")
 
 
 def say_unwritable(folder: Path, error: OSError) -> None:

@@ -1,18 +1,18 @@
 """Memory that is asked for before it is needed."""
 
-from typing import Any
+from typing import Any, cast
 
-from llvmlite import ir
 from numba.core import types
+from numba.core.cgutils import ir  # of the llvmlite that belongs to this Numba
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
-from .decorators import is_interpreted
+from .numba_internals import is_interpreted
 
 _LINE = 64  # bytes of a processor's cache that come together
 _BYTE = ir.IntType(8)
 _FLAG = ir.IntType(32)
-# Arguments of LLVM's intrinsic: for reading and writing, to be kept in all caches, data.
+# What the intrinsic of LLVM takes: 0 for reading, 3 to keep it in all caches, 1 for data.
 _HOW = (ir.Constant(_FLAG, 0), ir.Constant(_FLAG, 3), ir.Constant(_FLAG, 1))
 
 
@@ -58,4 +58,4 @@ def _prefetch(typing_context: Any, array: Any, index: Any, first: Any, size: Any
 
 
 if not is_interpreted():
-    prefetch = _prefetch
+    prefetch = cast(Any, _prefetch)

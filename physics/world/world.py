@@ -182,7 +182,7 @@ class World:
                 large for a number.
         """
         length, count = checked_step(dt, steps)
-        built = self.built()
+        built = self._built or self.built()  # most steps save a call
         hits = built.stepper.step(length, count)
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped

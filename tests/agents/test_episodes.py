@@ -112,7 +112,7 @@ def test_suites_keep_training_test_and_named_levels_apart() -> None:
     assert full["named"].starts[-1].name == "warden"
 
 
-def test_named_stands_for_all_named_rounds_of_the_game() -> None:
+def test_named_stands_for_all_named_levels_of_the_game() -> None:
     """Configs once listed the twelve names for their validation."""
     lite, full = load_experiment("lite"), load_experiment("full")
     assert lite.validation.levels == ("named",)

@@ -232,7 +232,7 @@ def test_without_the_extra_it_says_what_to_install(package: str, command: str) -
         f"sys.exit(main({command.split()!r}))",
         status=1,
     )
-    assert 'pip install "arkanoid[train]"' in result.stderr
+    assert 'pip install -e ".[train]"' in result.stderr
     assert "Traceback" not in result.stderr
 
 

@@ -315,7 +315,7 @@ def test_info_counts_what_happened_in_the_step():
     lives, bricks = reset_infos["lives"], reset_infos["bricks_left"]
     env.action_space.seed(0)
     for _ in range(3000):
-        if env.state["done"]:
+        if env.state["done"].any():
             break
         infos = env.step(env.action_space.sample())[-1]
         for key in keys:

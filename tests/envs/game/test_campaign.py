@@ -47,7 +47,7 @@ def find_seed(layout, seeds, difficulty):
     return next((s for s in seeds if generated(s, difficulty) == layout.tobytes()), None)
 
 
-def test_the_campaign_is_the_named_rounds_the_boss_and_then_generated_ones_harder_and_harder():
+def test_the_campaign_is_the_named_levels_the_boss_and_then_generated_ones_harder_and_harder():
     env, world = make()
     for number, name in enumerate(CAMPAIGN, 1):
         assert world.round_number == number

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
 from arkanoid.envs.batch.batch import Autoreset, Batch
 from arkanoid.envs.config import Config
 from arkanoid.envs.observe.choice import make_observer
@@ -106,21 +105,3 @@ def test_more_changes_than_a_world_remembers_are_shown_all():
             missed += (batch.worlds["brick_changes"] - spectator.observer._shown[:, 0] > 8).any()
             assert spectator.observe() == batch.observations.tobytes()
     assert missed > 3
-
-
-@pytest.mark.parametrize("worlds", [1, 3])
-def test_the_state_of_an_environment_can_be_read_but_not_written(worlds):
-    env = ArkanoidEnv() if worlds == 1 else ArkanoidVectorEnv(worlds)
-    env.reset(seed=0)
-    state = env.state
-    places = np.array(state["paddle_x"])
-    env.step(2 if worlds == 1 else np.full(worlds, 2))
-    assert (state["paddle_x"] > places).all()
-    assert (env.state["paddle_x"] == state["paddle_x"]).all()
-    with pytest.raises(ValueError, match="read-only"):
-        state["paddle_x"] = 0.0
-    with pytest.raises(ValueError, match="read-only"):
-        (state if worlds == 1 else state[0]).lives = 9
-    kept = state.copy()
-    kept["lives"] = 9
-    assert (state["lives"] == 3).all()

@@ -108,7 +108,7 @@ def test_films_name_the_package_that_is_missing(
     assert "pip install imageio-ffmpeg" in capsys.readouterr().err
     monkeypatch.setitem(sys.modules, "PIL", None)
     assert cli.main([*replay, str(tmp_path / "x.gif")]) == 1
-    assert 'pip install "arkanoid[train]"' in capsys.readouterr().err
+    assert 'pip install -e ".[train]"' in capsys.readouterr().err
     assert cli.main([*replay, str(tmp_path / "x.png")]) == 0
 
 

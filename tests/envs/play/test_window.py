@@ -134,7 +134,7 @@ def test_an_illegal_speed_is_refused(frames_per_second: float) -> None:
 
 def test_without_pygame_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pygame", None)
-    with pytest.raises(DependencyNotInstalled, match=r'pip install "arkanoid\[play\]"'):
+    with pytest.raises(DependencyNotInstalled, match="pip install pygame-ce"):
         Window("test", 60)
 
 

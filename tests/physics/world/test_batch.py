@@ -2,9 +2,6 @@
 
 import hashlib
 import math
-import os
-import subprocess
-import sys
 import warnings
 from typing import Any
 
@@ -26,6 +23,8 @@ from arkanoid.physics import (
     World,
     WorldBatch,
 )
+from helpers.processes import INTERPRETED, run_python
+from helpers.repository import TESTS
 
 # All angles are quarter turns: other cosines depend on the platform.
 SHAPES: tuple[Collider, ...] = (
@@ -262,14 +261,8 @@ def test_the_golden_hash() -> None:
 
 
 def test_interpreted_and_compiled_give_the_same_bits() -> None:
-    result = subprocess.run(
-        [sys.executable, __file__],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert result.stdout.strip() == quiet_digest()
+    changes = INTERPRETED | {"PYTHONPATH": str(TESTS)}
+    assert run_python(__file__, changes=changes).stdout.strip() == quiet_digest()
 
 
 if __name__ == "__main__":
