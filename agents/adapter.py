@@ -42,14 +42,13 @@ class GymnasiumVecEnv(VecEnv):
         info_keywords: Sequence[str] = (),
         summed_keywords: Sequence[str] = (),
     ) -> None:
-        """Adapt ``env``; raise ValueError unless it restarts worlds in SAME_STEP mode."""
-        mode = env.metadata.get("autoreset_mode")
-        if mode != AutoresetMode.SAME_STEP:
-            raise ValueError(
-                f"stable-baselines3 needs worlds that restart in the step that ends their episode; "
-                f"this environment's autoreset_mode is {mode}: make it with "
-                f"autoreset_mode='SameStep'"
-            )
+        """Adapt ``env``.
+
+        Raises:
+            TypeError: it is a single environment.
+            ValueError: it does not restart worlds in SAME_STEP mode.
+        """
+        _check(env)
         self.env = env
         self._info_keywords = tuple(info_keywords)
         self._sums = {key: np.zeros(env.num_envs, np.float64) for key in summed_keywords}
@@ -58,6 +57,8 @@ class GymnasiumVecEnv(VecEnv):
         self._lengths = np.zeros(env.num_envs, np.int64)
         self._start = time.perf_counter()
         super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
+        # Films are as fast as the environment says: `VecVideoRecorder` looks here.
+        self.metadata = dict(env.metadata)
 
     def reset(self) -> VecEnvObs:
         """Start an episode in every world, with the seeds and options that were set before.
@@ -207,6 +208,24 @@ class GymnasiumVecEnv(VecEnv):
     def _demand_all(self, indices: VecEnvIndices, action: str) -> None:
         if len(set(self._get_indices(indices))) != self.num_envs:
             raise ValueError(f"cannot {action} for some worlds only: they share one environment")
+
+
+def _check(env: Any) -> None:
+    """Refuse what is no vector environment in SAME_STEP mode, and say how to make one."""
+    if not isinstance(env, VectorEnv):
+        raise TypeError(
+            f"GymnasiumVecEnv takes a Gymnasium vector environment, and {env} is none: make it by "
+            "gym.make_vec(id, num_envs, autoreset_mode='SameStep'), or give stable-baselines3 the "
+            "single environment as it is"
+        )
+    mode = env.metadata.get("autoreset_mode")
+    if mode != AutoresetMode.SAME_STEP:
+        raise ValueError(
+            "stable-baselines3 needs worlds that restart in the step that ends their episode; this "
+            f"environment's autoreset_mode is {mode}: make it by "
+            "gym.make_vec(id, num_envs, autoreset_mode='SameStep'), with vectorization_mode='sync' "
+            "or 'async' by vector_kwargs={'autoreset_mode': 'SameStep'}"
+        )
 
 
 def world_info(infos: dict[str, Any], world: int) -> dict[str, Any]:

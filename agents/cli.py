@@ -8,6 +8,7 @@ runs is imported: playing by hand needs none of the packages for training.
 import argparse
 import io
 import itertools
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -34,13 +35,14 @@ COMMANDS = {
 # These take no settings, ``--key value``: argparse reads all their options.
 _WITHOUT_SETTINGS = {"play", "replay", "levels"}
 # Options of the other commands that are no settings: without and with a value.
-_FLAGS = {"--help", "--version", "--json"}
+_FLAGS = {"--help", "--version", "--json", "--trust"}
 _OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
 _OPTIONS |= {"--trials"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
     "PIL": "train",
+    "filelock": "train",
     "imageio_ffmpeg": "train",
     "jinja2": "train",
     "markdown_it": "train",
@@ -75,8 +77,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _fail(str(error), 2)
     except DependencyNotInstalled as error:
         return _fail(str(error), 1)
+    except MemoryError as error:
+        return _fail(f"not enough memory: {error}".removesuffix(": "), 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
+    except BrokenPipeError:
+        # Whoever read the output has ended, as in `arkanoid levels | head`. Python would complain
+        # once more when it writes the rest.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package not in _EXTRAS:
@@ -133,5 +142,10 @@ def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
 
 
 def _fail(message: str, status: int) -> int:
-    print(f"arkanoid: error: {message}", file=sys.stderr)
+    # In one line, and without what a terminal would obey: it may quote a file of somebody else's.
+    shown = "".join(
+        letter if letter.isprintable() else f"\\x{ord(letter):02x}"
+        for letter in " ".join(message.split())
+    )
+    print(f"arkanoid: error: {shown}", file=sys.stderr)
     return status

@@ -17,6 +17,7 @@ from arkanoid.envs.config import ACTIONS, OBSERVATIONS, REWARD_MEANINGS, Config
 from arkanoid.envs.levels.starts import START_OPTIONS
 from arkanoid.envs.observe import planes, vector
 from arkanoid.envs.observe.layout import Part, slices
+from arkanoid.envs.registration import GAMES
 from arkanoid.envs.state import DECISION_LIMIT, IDLE, INFO_MEANINGS
 
 PAGE = Path(__file__).with_name("environment.md")
@@ -29,6 +30,8 @@ VIEWS: tuple[dict[str, Any], ...] = (
     {"observation": "grid"},
     {"observation": "rgb"},
     {"observation": "rgb", "grey": True, "stack": 4},
+    {"observation": "rgb", "channels": "last"},
+    {"observation": "dict", "grey": True, "stack": 4},
 )
 # Keywords whose words a section of the page explains.
 SECTIONS = {
@@ -42,9 +45,33 @@ VECTOR_KEYWORDS = {
         "'NextStep'",
         "Gymnasium's `AutoresetMode` or its name: `NextStep`, `SameStep`, `Disabled`",
     ),
-    "copy": ("True", "whether observations are copies; otherwise the next step overwrites them"),
+    "copy": (
+        "True",
+        "whether observations are copies; otherwise do not write into them, for the next step "
+        "writes only what has changed",
+    ),
     "threads": ("None", "how many threads step the games; None: as many as their number is worth"),
 }
+METHODS = {
+    "action_masks()": "which actions do something now: bool `[actions]`, or `[games, actions]`",
+    "get_action_meanings()": "Atari's word for each action",
+    "ale.lives()": "balls left, the present one included (single environment)",
+    "ale.getScreenRGB()": "the picture, where wrappers for Atari games look for it; also "
+    "`ale.getScreenGrayscale()` (single environment)",
+    "call(), get_attr(), set_attr()": "as Gymnasium's own vector environments have them",
+    "snapshot(), restore(), clone(), spread(), record()": "see [saving](saving.md)",
+}
+
+
+def ids() -> dict[str, str]:
+    """Return the ids with what they are: the other ones stand for keywords."""
+    others = {}
+    for name, keywords in GAMES.items():
+        base = "ArkanoidLite-v0" if "Lite" in name else "Arkanoid-v0"
+        changed = {key: value for key, value in keywords.items() if GAMES[base].get(key) != value}
+        given = ", ".join(f"{key}={value!r}" for key, value in changed.items())
+        others[name] = f"`{base}` with `{given}`"
+    return others | IDS
 
 
 def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
@@ -109,6 +136,7 @@ def keyword_table() -> str:
             meaning = f"{meaning}. {'; '.join(words)}"
         rows.append((f"`{keyword.name}`", f"`{keyword.default!r}`", meaning.replace("``", "`")))
     rows.append(("`render_mode`", "`None`", "`'rgb_array'` (needs no display), `'human'` or None"))
+    rows.append(("`render_size`", "`None`", "of frames: height or (height, width); None is 512"))
     return table(("keyword", "default", "meaning"), rows)
 
 
@@ -124,7 +152,7 @@ def page() -> str:
 
 # The environments
 
-{meanings("id", IDS)}
+{meanings("id", ids())}
 
 ```python
 import gymnasium as gym
@@ -135,7 +163,9 @@ worlds = gym.make_vec(
 )
 ```
 
-This page holds for both, as a single and as a vector environment.
+This page holds for all of them, as a single and as a vector environment. Most ids are for tools
+that take an id and no keywords; the two with `NoFrameskip` are for scripts that wrap the Atari
+games of that name.
 
 ## Description
 
@@ -185,8 +215,14 @@ The rows of `status`, from the top: {", ".join(f"`{name}`" for name in planes.ST
 
 ### `rgb`
 
-Pictures as `render` shows them, channels first: `[stack * channels, height, width]`. No display is
-needed. At a reset the first picture fills the stack.
+Pictures as `render` shows them, `[stack * channels, height, width]`, or with `channels="last"`
+`[height, width, stack * channels]`. No display is needed. At a reset the first picture fills the
+stack.
+
+### `dict`
+
+A dictionary with the pictures as `"rgb"` and the numbers as `"vector"`. `layout` has the layout of
+each under its name.
 
 ## Rewards
 
@@ -215,7 +251,14 @@ configuration.
   after {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss ({IDLE}). Observations show
   both clocks.
 
-A cleared round does not end an episode: the next round begins.
+A cleared round does not end an episode: the next round begins. With `episodic_life=True` each lost
+life ends an episode (*terminated*), and the next one begins where the game is; the game is the same
+bit for bit. It is over when `info["lives"]` is 0 or the episode was truncated. The clocks are those
+of the game.
+
+Where Gymnasium's own `TimeLimit` truncates (`gym.make(..., max_episode_steps=n)`),
+`info["truncation"]` is 0, because the environment cannot know; `max_decisions=n` does the same and
+says so. `env.spec.max_episode_steps` is `max_decisions`, for wrappers that ask.
 
 ## Information
 
@@ -232,6 +275,10 @@ Keywords of `gym.make` and `gym.make_vec`, and keys of the table `[env]` of an e
 The vector environment also takes:
 
 {table(("keyword", "default", "meaning"), vector_keywords)}
+
+## Methods
+
+{meanings("method", METHODS)}
 
 ## Version History
 

@@ -7,6 +7,7 @@ if TYPE_CHECKING:
     from .arkanoid_env import ArkanoidEnv
     from .batch.playback import ReplayDivergedError, play_replay, replay_frames
     from .batch.replays import Replay
+    from .batch.transitions import Transition, replay_transitions
     from .vector_env import ArkanoidVectorEnv
 
 __all__ = [
@@ -14,8 +15,10 @@ __all__ = [
     "ArkanoidVectorEnv",
     "Replay",
     "ReplayDivergedError",
+    "Transition",
     "play_replay",
     "replay_frames",
+    "replay_transitions",
 ]
 
 _MODULES = {
@@ -23,8 +26,10 @@ _MODULES = {
     "ArkanoidVectorEnv": "vector_env",
     "Replay": "batch.replays",
     "ReplayDivergedError": "batch.playback",
+    "Transition": "batch.transitions",
     "play_replay": "batch.playback",
     "replay_frames": "batch.playback",
+    "replay_transitions": "batch.transitions",
 }
 
 

@@ -1,10 +1,13 @@
 """What actions command: the velocity of the paddle, and whether it fires."""
 
+import operator
 from typing import Any
 
 import numpy as np
 
 from ..physics.kernels import kernel
+
+BOX = "Box(-1.0, 1.0, (2,), float32)"  # the space of continuous actions, in words
 
 # Velocity in [-1, 1] and fire of the discrete actions, float64 [actions, 2].
 _MOVES = [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0]]
@@ -12,8 +15,57 @@ _MOVES_WITH_FIRE = [[move, 1.0] for move, _ in _MOVES]
 
 COMMANDS = {
     "discrete3": np.array(_MOVES),
+    # Those of Atari's Breakout, in its order: its wrappers look for FIRE at 1.
+    "discrete4": np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]]),
     "discrete6": np.array(_MOVES + _MOVES_WITH_FIRE),
 }
+_WORDS = {-1.0: "LEFT", 0.0: "", 1.0: "RIGHT"}
+
+
+def action_meanings(actions: str) -> list[str]:
+    """Return the Atari's word for each discrete action, ``"LEFTFIRE"`` say.
+
+    Raises:
+        ValueError: the actions are continuous.
+    """
+    if actions not in COMMANDS:
+        raise ValueError(f"actions={actions!r} are continuous: no action has a meaning of its own")
+    words = [_WORDS[move] + ("FIRE" if fire else "") for move, fire in COMMANDS[actions].tolist()]
+    return [word or "NOOP" for word in words]
+
+
+def read_discrete(action: Any, count: int) -> int:
+    """Return the number of one discrete action: an integer of Python, NumPy, torch or JAX.
+
+    Raises:
+        TypeError: it is no integer.
+        ValueError: it is not in the space.
+    """
+    try:
+        number = operator.index(action)
+    except TypeError:
+        raise TypeError(
+            f"action {action!r} is not in Discrete({count}): it must be one integer"
+        ) from None
+    if not 0 <= number < count:
+        raise ValueError(f"action {action!r} is not in Discrete({count})")
+    return number
+
+
+def read_box(action: Any) -> tuple[float, float]:
+    """Return the velocity in [-1, 1] and fire (0 or 1) of one continuous action.
+
+    Raises:
+        TypeError: it is not two numbers.
+        ValueError: it has a NaN.
+    """
+    array = np.asarray(action)
+    if array.shape != (2,) or array.dtype.kind not in "iuf":
+        raise TypeError(f"action {action!r} is not in {BOX}: it must be velocity and fire")
+    move, fire = array.tolist()
+    if move != move or fire != fire:
+        raise ValueError(f"action {action!r} is not in {BOX}: it has a NaN")
+    return max(-1.0, min(1.0, move)), 1.0 if fire > 0.0 else 0.0
 
 
 @kernel
@@ -34,16 +86,17 @@ def decode_actions(actions: Any, table: Any, commands: Any) -> int:
 
 @kernel
 def decode_velocities(actions: Any, commands: Any) -> int:
-    """Write what box actions (float64 [n, 2]) command; return the first illegal one's world or -1.
+    """Write what box actions (float64 [n, 2]) command; return the first NaN's world or -1.
+
+    What is outside of the bounds counts as at the bound: a float32 is often rounded past it.
 
     Args:
         commands: float64 [n, 2].
     """
     for index in range(actions.shape[0]):
         move, fire = actions[index, 0], actions[index, 1]
-        # In this order a NaN is illegal.
-        if not (-1.0 <= move <= 1.0 and -1.0 <= fire <= 1.0):
+        if move != move or fire != fire:
             return index
-        commands[index, 0] = move
+        commands[index, 0] = max(-1.0, min(1.0, move))
         commands[index, 1] = 1.0 if fire > 0.0 else 0.0
     return -1

@@ -7,20 +7,25 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from .actions import COMMANDS
+from .actions import COMMANDS, action_meanings, read_box, read_discrete
 from .batch.batch import Batch
 from .batch.snapshots import restore_snapshot, take_snapshot
 from .checks import check_integer
 from .config import Config
+from .emulator import Emulator
 from .interface import (
     METADATA,
     RENDER_MODES,
+    SpecWithLimit,
     action_space,
     check_options,
     check_render_mode,
+    frame_size,
     instance_metadata,
 )
 from .levels.generator import MAX_SEED
+from .masks import action_masks
+from .observe.parts import copy_of
 from .rules import TICKS_PER_SECOND
 from .state import INFO_FIELDS, Outcome, WorldRecord
 
@@ -28,7 +33,7 @@ if TYPE_CHECKING:
     from .batch.recorder import Recorder
     from .play.window import Window
 
-Observation = NDArray[Any]
+Observation = Any  # an array, or with observation="dict" a dictionary of arrays
 
 _REWARD = Outcome.names.index("reward")  # type: ignore[union-attr]
 _TERMINATED = Outcome.names.index("terminated")  # type: ignore[union-attr]
@@ -44,6 +49,8 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     Args:
         render_mode: ``"rgb_array"`` (uint8 frames, drawn without a display), ``"human"`` (a
             window; needs the extra ``play``) or None.
+        render_size: of the frames: their height in pixels (the width follows), or (height, width);
+            None is a height of 512.
         **keywords: the rules and the interface, see `Config`.
 
     Raises:
@@ -51,11 +58,18 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     """
 
     metadata = METADATA
+    spec: Any = SpecWithLimit()
 
-    def __init__(self, render_mode: str | None = None, **keywords: Any) -> None:
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        render_size: int | tuple[int, int] | None = None,
+        **keywords: Any,
+    ) -> None:
         check_render_mode(render_mode, RENDER_MODES)
-        self.config = Config.from_keywords(keywords)
+        self.config = Config.from_keywords(keywords, ("render_mode", "render_size"))
         self.render_mode = render_mode
+        self._frame_size = frame_size(render_size)
         self.metadata = instance_metadata(self.config)
         self._batch = Batch(1, self.config)
         self.observation_space = self._batch.observer.space
@@ -71,13 +85,14 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode.
 
-        A seed determines all that follows. Without one the generator goes on from where it is.
+        A seed determines all that follows. Without one the generator goes on from where it is; with
+        `episodic_life` so does the game after the loss of a life, unless there are options.
 
         Args:
             seed: of the game's random numbers.
             options: how this and the following episodes begin: ``"level"`` (a name or path, or the
                 number of a round), ``"seed"`` (of a generated level; not the game's) and
-                ``"difficulty"``; see `curriculum`.
+                ``"difficulty"``; see `arkanoid.envs.levels.starts`.
         """
         super().reset(seed=seed)
         check_options(options)
@@ -85,26 +100,31 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             seed = int(self.np_random.integers(1 << 62))
         if seed is not None:
             self._batch.seed(0, seed)
-        self._batch.reset(_ALL, options)
+        self._batch.reset(_ALL, options, None if seed is None else _ALL)
         self._show()
         return self._shown()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Play one decision."""
+        """Play one decision.
+
+        Args:
+            action: an integer, or velocity and fire; numbers of NumPy and torch are legal, too.
+
+        Raises:
+            TypeError, ValueError: it is not in the action space. (Velocities beyond a bound count
+                as the bound.)
+        """
         batch = self._batch
-        if self._commands is None:
-            batch.command(np.asarray(action)[np.newaxis])
-        elif 0 <= action < len(self._commands):
-            batch.commands[0, 0], batch.commands[0, 1] = self._commands[action]
-        else:
-            raise ValueError(f"action {action!r} is not in {self.action_space}")
+        table = self._commands
+        command = read_box(action) if table is None else table[read_discrete(action, len(table))]
+        batch.commands[0, 0], batch.commands[0, 1] = command
         batch.step()
         # As tuples, because NumPy takes longer to make one record.
         (outcome,) = batch.outcomes.tolist()
         if self.render_mode == "human":
             self._show()
         return (
-            batch.observer.observations[0].copy(),
+            copy_of(batch.observer.observations[0]),
             outcome[_REWARD],
             outcome[_TERMINATED],
             outcome[_TRUNCATED],
@@ -117,7 +137,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             # Imported on demand: playing without pictures needs none of the drawing kernels.
             from .draw.picture import draw_world
 
-            return draw_world(self._batch.worlds, self._batch.rules, 0)
+            return draw_world(self._batch.worlds, self._batch.rules, 0, *self._frame_size)
         if self.render_mode is None:
             gym.logger.warn(
                 "render() without a render mode: use gym.make(..., render_mode='rgb_array')"
@@ -187,6 +207,33 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
 
         return Recorder(self._batch, 0)
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Return which actions do something now, bool [actions], for algorithms that mask.
+
+        Raises:
+            ValueError: the actions are continuous.
+        """
+        masks: NDArray[np.bool_] = action_masks(self.config, self._batch.worlds)[0]
+        return masks
+
+    def get_action_meanings(self) -> list[str]:
+        """Return Atari's word for each action: ``"NOOP"``, ``"LEFT"``, ``"RIGHTFIRE"``, ...
+
+        Raises:
+            ValueError: the actions are continuous.
+        """
+        return action_meanings(self.config.actions)
+
+    @property
+    def ale(self) -> Emulator:
+        """Lives and pictures, where wrappers for Atari games look for them."""
+        return Emulator(self._batch)
+
+    @property
+    def _frameskip(self) -> int:
+        # `AtariPreprocessing` looks for it.
+        return self.config.frame_skip
+
     def get_keys_to_action(self) -> dict[tuple[int, ...], Any]:
         """Return the action of each combination of keys: ``gymnasium.utils.play.play`` asks for it.
 
@@ -211,7 +258,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         """Return the present observation and info."""
         (outcome,) = self._batch.outcomes.tolist()
         info = dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
-        return self._batch.observations[0].copy(), info
+        return copy_of(self._batch.observations[0]), info
 
     def _show(self) -> None:
         """Show the game in render mode ``"human"``; the first call opens the window."""

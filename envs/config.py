@@ -1,14 +1,16 @@
 """Every option of the environment, with its meaning and checked: the keywords of `gym.make`."""
 
+import os
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
+from enum import Enum
 from typing import Any
 
 import numpy as np
 
 from .checks import check_boolean, check_choice, check_integer, check_number
+from .hints import keyword_hint
 from .rules import CAPSULE_RATE, DEFLECTIONS, REWARDS
 
 # What the keywords that take one of some words mean by each.
@@ -16,13 +18,19 @@ OBSERVATIONS = {
     "vector": "float32 numbers",
     "grid": "float32 planes over the cells of the field",
     "rgb": "uint8 pictures",
+    "dict": "pictures and numbers together, with the keys ``'rgb'`` and ``'vector'``",
 }
 ACTIONS = {
     "discrete6": "0 nothing, 1 left, 2 right, and 3, 4, 5 the same with fire",
+    "discrete4": "0 nothing, 1 fire, 2 right, 3 left, as in Atari's Breakout, for its wrappers",
     "discrete3": "0 nothing, 1 left, 2 right, while balls leave the paddle and the laser shoots by "
     "themselves",
     "box": "float32 [2], each in [-1, 1]: the paddle's velocity (1: full speed to the right), and "
-    "fire if positive",
+    "fire if positive; values beyond a bound count as the bound",
+}
+CHANNELS = {
+    "first": "``[channels, height, width]``, for the networks of torch",
+    "last": "``[height, width, channels]``, for the wrappers of Gymnasium and Atari",
 }
 REWARD_MEANINGS = {
     "progress": "each needed hit pays 1 / needed hits of the round, and clearing it pays 1",
@@ -34,9 +42,10 @@ DEFLECTION_MEANINGS = {
     "zones6": "six zones of the paddle give six fixed angles",
     "physical": "the ball bounces from the paddle's shape",
 }
-# The keywords that say only how a game is seen. All others decide its course.
-_PICTURES = ("size", "grey", "stack")
-_SEEN = ("observation", *_PICTURES)
+# The keywords that say only how a game is seen, or cut into episodes. All others decide its course.
+_PICTURES = ("size", "grey", "stack", "channels")
+SEEN = ("observation", *_PICTURES)
+_NOT_OF_THE_GAME = (*SEEN, "episodic_life")
 MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
 
@@ -52,17 +61,24 @@ class Config:
 
     observation: str = _keyword("vector", "what is observed", OBSERVATIONS)
     size: int | Sequence[int] = _keyword(
-        84, "with ``'rgb'``: height and width of the pictures in pixels, or (height, width)"
+        84, "with pictures: their height and width in pixels, or (height, width)"
     )
-    grey: bool = _keyword(False, "with ``'rgb'``: one channel, brightness, instead of three")
+    grey: bool = _keyword(False, "with pictures: one channel, brightness, instead of three")
     stack: int = _keyword(
-        1, "with ``'rgb'``: how many of the latest pictures an observation shows, the newest last"
+        1, "with pictures: how many of the latest ones an observation shows, the newest last"
     )
+    channels: str = _keyword("first", "with pictures: which axis has the channels", CHANNELS)
     actions: str = _keyword("discrete6", "the action space", ACTIONS)
     reward: str = _keyword("progress", "what a decision pays", REWARD_MEANINGS)
     frame_skip: int = _keyword(4, "ticks per decision; the reward is their sum")
     sticky_action: float = _keyword(0.0, "the probability that a decision repeats the one before")
     lives: int = _keyword(3, "how many balls may be lost; then the episode terminates")
+    episodic_life: bool = _keyword(
+        False,
+        "whether each lost life ends an episode. The game goes on behind it: the next episode "
+        "begins where the game is, until the last life is lost or the game is truncated. A reset "
+        "with a seed or options, or in the middle of an episode, begins a new game",
+    )
     life_penalty: float = _keyword(0.0, "is taken off the reward for each lost life")
     levels: str | range | Sequence[str] = _keyword(
         "campaign",
@@ -90,6 +106,7 @@ class Config:
         check_choice("deflection", self.deflection, tuple(DEFLECTIONS))
         check_integer("frame_skip", self.frame_skip, 1, 1000)
         check_integer("lives", self.lives, 1, 1000)
+        check_boolean("episodic_life", self.episodic_life)
         check_integer("max_decisions", self.max_decisions, 1, 10**12)
         check_number("sticky_action", self.sticky_action, 0.0, 1.0)
         check_number("life_penalty", self.life_penalty, 0.0, 1e9)
@@ -100,6 +117,7 @@ class Config:
         check_boolean("capsules", self.capsules)
         check_number("capsule_rate", self.capsule_rate, 0.0, 1.0)
         check_boolean("enemies", self.enemies)
+        object.__setattr__(self, "levels", _paths_as_text(self.levels))
         _check_levels(self.levels)
 
     def _check_pictures(self) -> None:
@@ -114,7 +132,8 @@ class Config:
             check_integer("size", pixels, 1, MAX_SIZE)
         check_boolean("grey", self.grey)
         check_integer("stack", self.stack, 1, MAX_STACK)
-        if self.observation == "rgb":
+        check_choice("channels", self.channels, tuple(CHANNELS))
+        if self.observation in ("rgb", "dict"):
             return
         for keyword in fields(self):
             value = getattr(self, keyword.name)
@@ -133,40 +152,60 @@ class Config:
         return self.size, self.size
 
     @classmethod
-    def from_keywords(cls, keywords: dict[str, Any]) -> "Config":
+    def from_keywords(cls, keywords: dict[str, Any], others: Sequence[str] = ()) -> "Config":
         """Return the configuration.
 
+        Args:
+            keywords: the values that are not the defaults.
+            others: keywords that the caller takes itself; errors name them, too.
+
         Raises:
-            TypeError: a keyword is unknown (the message names the nearest one), or a value has
+            TypeError: a keyword is unknown (the message says which one is meant), or a value has
                 the wrong type.
             ValueError: a value is out of range.
         """
         known = [keyword.name for keyword in fields(cls)]
         for name in keywords:
             if name not in known:
-                near = get_close_matches(name, known, 1)
-                hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}."
+                hint = keyword_hint(name, [*known, *others])
                 # These are Python's own words: TorchRL's `GymEnv` looks for them.
                 raise TypeError(f"got an unexpected keyword argument {name!r}; {hint}")
         return cls(**keywords)
 
     def plain(self) -> dict[str, Any]:
         """Return the keywords as JSON and TOML hold them; `from_keywords` takes them back."""
-        return {keyword: _plain(value) for keyword, value in vars(self).items()}
+        return {keyword: plain(value) for keyword, value in vars(self).items()}
 
     def of_the_game(self) -> "Config":
-        """Return the same game with the default observation."""
-        return Config(**{name: value for name, value in vars(self).items() if name not in _SEEN})
+        """Return the same game with the default observation, as one episode."""
+        keywords = vars(self).items()
+        return Config(**{name: value for name, value in keywords if name not in _NOT_OF_THE_GAME})
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Return a keyword's value as JSON and TOML hold it."""
     if isinstance(value, range):
         return f"seeds:{value.start}-{value.stop - 1}"
     if isinstance(value, np.generic):
         return value.item()
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     return value
+
+
+def _paths_as_text(levels: Any) -> Any:
+    """Return the value of `levels` with text in place of each `pathlib.Path`."""
+    if isinstance(levels, os.PathLike):
+        return os.fspath(levels)
+    if isinstance(levels, list | tuple):
+        return type(levels)(
+            os.fspath(item) if isinstance(item, os.PathLike) else item for item in levels
+        )
+    return levels
 
 
 def _check_levels(value: object) -> None:

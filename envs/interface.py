@@ -1,5 +1,6 @@
-"""What the single and the vector environment share: action space, metadata and checks."""
+"""What the single and the vector environment share: action space, metadata, spec and checks."""
 
+from copy import copy
 from difflib import get_close_matches
 from typing import Any
 
@@ -7,7 +8,8 @@ import numpy as np
 from gymnasium import spaces
 
 from .actions import COMMANDS
-from .config import Config
+from .checks import check_integer
+from .config import MAX_SIZE, Config, plain
 from .levels.starts import START_OPTIONS
 from .rules import TICKS_PER_SECOND
 
@@ -33,10 +35,56 @@ def instance_metadata(config: Config) -> dict[str, Any]:
     return METADATA | {"render_fps": max(1, TICKS_PER_SECOND // config.frame_skip)}
 
 
+class SpecWithLimit:
+    """The attribute `spec` of an environment, which `gym.make` sets.
+
+    Its ``max_episode_steps`` is the environment's own limit, for wrappers that ask for one
+    (`TimeAwareObservation`). `gym.make` adds a `TimeLimit` only if the registered spec has a limit,
+    and ours have none. Its keywords are such that JSON holds them.
+    """
+
+    def __get__(self, env: Any, owner: type | None = None) -> Any:
+        return None if env is None else env.__dict__.get("_spec")
+
+    def __set__(self, env: Any, spec: Any) -> None:
+        if spec is not None:
+            spec = copy(spec)
+            spec.max_episode_steps = env.config.max_decisions
+            spec.kwargs = {name: plain(value) for name, value in spec.kwargs.items()}
+        env.__dict__["_spec"] = spec
+
+
+def frame_size(render_size: Any) -> tuple[int, ...]:
+    """Return the height, or height and width, of rendered frames; () for the default.
+
+    Raises:
+        TypeError, ValueError: it is no size.
+    """
+    if render_size is None:
+        return ()
+    sizes = (render_size,) if isinstance(render_size, int | np.integer) else tuple(render_size)
+    if len(sizes) > 2:
+        raise ValueError(
+            f"render_size must be None, a height or (height, width); got {render_size!r}"
+        )
+    for size in sizes:
+        check_integer("render_size", size, 1, MAX_SIZE)
+    return sizes
+
+
 def check_render_mode(render_mode: str | None, legal: tuple[str, ...]) -> None:
     """Raise a ValueError if a render mode is unknown."""
     if render_mode is not None and render_mode not in legal:
         raise ValueError(f"render_mode must be None or one of {legal}; got {render_mode!r}")
+
+
+def check_limit(max_episode_steps: int | None, config: Config) -> None:
+    """Raise a ValueError if a limit would truncate earlier than the configuration's own."""
+    if max_episode_steps is not None and max_episode_steps < config.max_decisions:
+        raise ValueError(
+            f"max_episode_steps={max_episode_steps} is for Gymnasium's own TimeLimit around single "
+            f"environments: here use max_decisions={max_episode_steps}"
+        )
 
 
 def check_options(options: dict[str, Any] | None) -> None:

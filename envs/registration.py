@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, load_env_creator
 
+from .hints import BATCH_KEYWORDS
+
 if TYPE_CHECKING:
     from .config import Config
 
@@ -14,18 +16,36 @@ _PACKAGE = __name__.rpartition(".")[0]
 _ENTRY_POINT = f"{_PACKAGE}.arkanoid_env:ArkanoidEnv"
 _VECTOR_ENTRY_POINT = f"{_PACKAGE}.vector_env:ArkanoidVectorEnv"
 
-# Keywords of `ArkanoidVectorEnv` that are no part of a `Config`.
-BATCH_KEYWORDS = ("render_mode", "autoreset_mode", "copy", "threads")
+# The simplest to learn.
+_LITE: dict[str, Any] = {"actions": "discrete3", "capsules": False, "enemies": False}
+_PIXELS: dict[str, Any] = {"observation": "rgb", "grey": True, "stack": 4}
+# Like the Atari games of that name, for scripts that bring their own wrappers.
+_NO_FRAMESKIP: dict[str, Any] = {
+    "observation": "rgb",
+    "size": (210, 160),
+    "channels": "last",
+    "actions": "discrete4",
+    "frame_skip": 1,
+    "max_decisions": 108_000,  # as many ticks as in the other games
+}
+
+# The keywords of each id. There is one for each kind of actions and of observations, because some
+# tools take an id and nothing else.
+GAMES: dict[str, dict[str, Any]] = {
+    "Arkanoid-v0": {},
+    "ArkanoidContinuous-v0": {"actions": "box"},
+    "ArkanoidPixels-v0": _PIXELS,
+    "ArkanoidNoFrameskip-v0": _NO_FRAMESKIP,
+    "ArkanoidLite-v0": _LITE,
+    "ArkanoidLiteContinuous-v0": _LITE | {"actions": "box"},
+    "ArkanoidLitePixels-v0": _LITE | _PIXELS,
+    "ArkanoidLiteNoFrameskip-v0": _LITE | _NO_FRAMESKIP,
+}
 
 
 def register_environments() -> None:
     """Register the environments with Gymnasium; what is already there stays, without a warning."""
-    games: dict[str, dict[str, Any]] = {
-        "Arkanoid-v0": {},
-        # The simplest to learn.
-        "ArkanoidLite-v0": {"actions": "discrete3", "capsules": False, "enemies": False},
-    }
-    for name, keywords in games.items():
+    for name, keywords in GAMES.items():
         if name not in gym.registry:
             gym.register(
                 id=name,

@@ -22,6 +22,10 @@ DRIFTING = 2
 CIRCLING = 3
 DIVING = 4
 
+# Why an episode is over (`World.done`).
+GAME_OVER = 1  # the last life is lost, or the game is truncated
+LIFE_LOST = 2  # with `episodic_life`: the next episode goes on with the game
+
 # Why an episode was truncated (`Outcome.truncation`).
 NOT_TRUNCATED = 0
 DECISION_LIMIT = 1
@@ -67,13 +71,13 @@ LevelEntry = record_dtype([("kind", np.uint8, (CELLS,)), ("boss", np.bool_)])
 
 # A step of a batch that is larger than the processor's caches takes as long as it takes to bring
 # the lines of 64 bytes that it touches. So fields that are touched together lie together, and the
-# wider ones first, which leaves no gaps. What may grow without bound has 64 bits, and so has what
-# is passed to a kernel that also takes constants: it would be compiled a second time.
+# wider ones first, which leaves hardly any gaps. What may grow without bound has 64 bits, and so
+# has what is passed to a kernel that also takes constants: it would be compiled a second time.
 World = record_dtype(
     [
         # What every decision touches: 320 bytes.
         ("random", np.uint64),  # the generator's state, see random.py
-        ("decisions", np.int64),  # of this episode
+        ("decisions", np.int64),  # of this game
         ("score", np.int64),
         ("lives", np.int64),
         ("round_number", np.int64),  # from 1
@@ -146,11 +150,12 @@ World = record_dtype(
         ("ball_caught", np.int32, (MAX_BALLS,)),  # 1: held by catch; 0: to be served
         ("hits_since_serve", np.int32),
         ("next_life", np.int64),  # the score that brings the next extra life
-        ("capped", np.int64),  # ticks of this episode with more hits than are resolved
         # What the beginning of an episode touches, or of a round.
-        ("first_random", np.uint64),  # the generator's state when this episode began
+        ("first_random", np.uint64),  # the generator's state when this game began
+        ("first_decision", np.int64),  # the game's decisions when this episode began
         # How episodes begin, until a reset says otherwise.
-        ("start", np.int64),
+        ("start", np.int32),
+        ("capped", np.int32),  # ticks of this episode with more hits than are resolved
         ("start_round", np.int64),
         ("start_seed", np.int64),
         ("start_difficulty", np.float64),  # of generated rounds; negative: as configured

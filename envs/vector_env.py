@@ -5,29 +5,52 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from .actions import action_meanings
 from .batch.batch import Autoreset, Batch
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .batch.stepping import tabulate_outcomes
 from .checks import check_integer
 from .config import Config
-from .interface import action_space, check_options, check_render_mode, instance_metadata
+from .hints import BATCH_KEYWORDS
+from .interface import (
+    SpecWithLimit,
+    action_space,
+    check_limit,
+    check_options,
+    check_render_mode,
+    frame_size,
+    instance_metadata,
+)
 from .levels.generator import MAX_SEED
+from .masks import action_masks
+from .observe.parts import copy_of, parts_of
 from .state import INFO_FIELDS, Worlds
 
 if TYPE_CHECKING:
     from .batch.recorder import Recorder
 
-Observations = NDArray[Any]
+try:
+    from gymnasium.vector import AutoresetMode
+except ImportError as error:
+    raise ImportError(
+        f"ArkanoidVectorEnv needs Gymnasium 1.1 or newer, which has autoreset modes; this is "
+        f"{gym.__version__}. gym.make() and SyncVectorEnv work with it"
+    ) from error
 
+Observations = Any  # an array, or with observation="dict" a dictionary of arrays
+
+_RENDER_MODES = ("rgb_array",)
+# What `call` asks each world for. Everything else is the same for all worlds.
+_OF_EACH_WORLD = ("action_masks", "render")
 _MODES = {
     AutoresetMode.DISABLED: Autoreset.DISABLED,
     AutoresetMode.NEXT_STEP: Autoreset.NEXT_STEP,
     AutoresetMode.SAME_STEP: Autoreset.SAME_STEP,
 }
+MOST_WORLDS = 1 << 30
 
 
 class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], Any]):
@@ -39,14 +62,20 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         autoreset_mode: a Gymnasium `AutoresetMode` or its text (``"NextStep"``, ``"SameStep"``,
             ``"Disabled"``).
         copy: whether `reset` and `step` return fresh observations. With False they return views of
-            the same memory each time, which a later step overwrites.
+            the same memory each time: do not write into it, a later step writes only what
+            has changed.
         threads: the largest number of threads that step the worlds; None lets the number of
             worlds decide. It changes no bit of the results.
+        render_size: of the frames: their height in pixels (the width follows), or (height, width);
+            None is a height of 512.
+        max_episode_steps: Gymnasium passes it from a spec; at least `max_decisions`.
         **keywords: the rules and the interface, see `Config`.
 
     Raises:
         TypeError, ValueError: a keyword is unknown or its value is illegal.
     """
+
+    spec: Any = SpecWithLimit()
 
     def __init__(
         self,
@@ -55,19 +84,25 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         copy: bool = True,
         threads: int | None = None,
+        render_size: int | tuple[int, int] | None = None,
+        max_episode_steps: int | None = None,
         **keywords: Any,
     ) -> None:
-        check_render_mode(render_mode, ("rgb_array",))
-        if num_envs < 1:
-            raise ValueError(f"num_envs must be at least 1; got {num_envs!r}")
+        check_render_mode(render_mode, _RENDER_MODES)
+        check_integer("num_envs", num_envs, 1, MOST_WORLDS)
         if threads is not None and threads < 1:
             raise ValueError(f"threads must be None or at least 1; got {threads!r}")
-        self.config = Config.from_keywords(keywords)
+        self.config = Config.from_keywords(keywords, ("num_envs", *BATCH_KEYWORDS))
+        check_limit(max_episode_steps, self.config)
         self.num_envs = num_envs
         self.render_mode = render_mode
+        self._frame_size = frame_size(render_size)
         self.copy = copy
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self.metadata = instance_metadata(self.config) | {"autoreset_mode": self.autoreset_mode}
+        self.autoreset_mode = _read_mode(autoreset_mode)
+        self.metadata = instance_metadata(self.config) | {
+            "render_modes": list(_RENDER_MODES),
+            "autoreset_mode": self.autoreset_mode,
+        }
         self._mode = _MODES[self.autoreset_mode]
         self._batch = Batch(num_envs, self.config, self._mode, threads)
         self.single_observation_space = self._batch.observer.space
@@ -76,6 +111,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.layout = self._batch.observer.layout
         self._everywhere = np.ones(num_envs, np.bool_)
+        self._attributes: dict[str, tuple[Any, ...]] = {}
 
     def reset(
         self,
@@ -88,15 +124,15 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         An int seeds world ``i`` with ``seed + i``; a sequence gives each world's own seed; None
         goes on with each world's generator. The options ``"level"``, ``"seed"`` and
         ``"difficulty"`` say how this and the following episodes of those worlds begin, see
-        `curriculum`.
+        `arkanoid.envs.levels.starts`. With `episodic_life` a world's game goes on after the loss of
+        a life, unless the world gets a seed or there are such options.
         """
         super().reset(seed=seed if isinstance(seed, int) else None)
         check_options(options)
         mask = self._everywhere
         if options and "reset_mask" in options:
             mask = self._reset_mask(options["reset_mask"])
-        self._seed(seed, mask)
-        self._batch.reset(mask, options)
+        self._batch.reset(mask, options, self._seed(seed, mask))
         return self._observations(), self._infos(self._batch.outcomes, mask)
 
     def step(
@@ -139,7 +175,72 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         from .draw.picture import draw_world
 
         batch = self._batch
-        return tuple(draw_world(batch.worlds, batch.rules, index) for index in range(self.num_envs))
+        return tuple(
+            draw_world(batch.worlds, batch.rules, index, *self._frame_size)
+            for index in range(self.num_envs)
+        )
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Return which actions do something now, bool [n, actions], for algorithms that mask.
+
+        Raises:
+            ValueError: the actions are continuous.
+        """
+        return action_masks(self.config, self._batch.worlds)
+
+    def get_action_meanings(self) -> list[str]:
+        """Return Atari's word for each action: ``"NOOP"``, ``"LEFT"``, ``"RIGHTFIRE"``, ...
+
+        Raises:
+            ValueError: the actions are continuous.
+        """
+        return action_meanings(self.config.actions)
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """Return what a method or an attribute of each world gives, as `SyncVectorEnv.call` does.
+
+        ``"action_masks"``, ``"render"`` and ``"snapshot"`` differ from world to world. Anything
+        else is asked of the environment once, and the same for all worlds.
+
+        Raises:
+            AttributeError: there is nothing of that name.
+        """
+        if name in self._attributes:
+            return self._attributes[name]
+        if name == "snapshot":
+            return tuple(self.snapshot(world) for world in range(self.num_envs))
+        if name in ("observation_space", "action_space"):
+            name = f"single_{name}"
+        value = getattr(self, name)
+        if callable(value):
+            value = value(*args, **kwargs)
+            if name in _OF_EACH_WORLD:
+                return tuple(value) if value is not None else (None,) * self.num_envs
+        return (value,) * self.num_envs
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """Return an attribute of each world, see `call`."""
+        return self.call(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set an attribute of each world: a list or tuple with one value per world, or one for all.
+
+        An attribute of this environment is set for all worlds at once. Any other one is only kept
+        for `get_attr`.
+
+        Raises:
+            ValueError: the number of values is wrong, or they differ where all worlds share one.
+        """
+        if not isinstance(values, list | tuple):
+            values = [values] * self.num_envs
+        if len(values) != self.num_envs:
+            raise ValueError(f"{len(values)} values for {self.num_envs} worlds; give one for each")
+        if not hasattr(self, name):
+            self._attributes[name] = tuple(values)
+        elif any(value != values[0] for value in values):
+            raise ValueError(f"all worlds share {name!r}: give one value; got {values!r}")
+        else:
+            setattr(self, name, values[0])
 
     @property
     def state(self) -> Worlds:
@@ -218,8 +319,14 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         if hasattr(self, "_batch"):
             self._batch.close()
 
-    def _seed(self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]) -> None:
-        """Seed the masked worlds; one that was never seeded gets a random seed."""
+    def _seed(
+        self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """Seed the masked worlds, and return which got a seed, bool [n].
+
+        A world that was never seeded gets a random seed.
+        """
+        seeded = np.zeros(self.num_envs, np.bool_)
         if seed is None:
             seeds: Sequence[int | None] = [None] * self.num_envs
         elif isinstance(seed, int | np.integer):
@@ -234,6 +341,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
                 chosen = int(self.np_random.integers(1 << 62))
             if chosen is not None:
                 self._batch.seed(index, int(chosen))
+                seeded[index] = True
+        return seeded
 
     def _reset_mask(self, mask: Any) -> NDArray[np.bool_]:
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
@@ -247,7 +356,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
     def _observations(self) -> Observations:
         observations = self._batch.observations
-        return observations.copy() if self.copy else observations
+        return copy_of(observations) if self.copy else parts_of(observations)
 
     def _infos(self, outcomes: Any, mask: NDArray[np.bool_]) -> dict[str, Any]:
         """Return what outcomes tell, and for each key the mask of the worlds that have it."""
@@ -268,10 +377,18 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             return {}
         final = np.full(self.num_envs, None, object)
         for index in np.flatnonzero(done):
-            final[index] = self._batch.final_observations[index].copy()
+            final[index] = copy_of(self._batch.final_observations[index])
         return {
             "final_obs": final,
             "_final_obs": done,
             "final_info": self._infos(self._batch.finals, done),
             "_final_info": done.copy(),
         }
+
+
+def _read_mode(mode: str | AutoresetMode) -> AutoresetMode:
+    try:
+        return AutoresetMode(mode)
+    except ValueError:
+        legal = ", ".join(repr(each.value) for each in AutoresetMode)
+        raise ValueError(f"autoreset_mode must be one of {legal}; got {mode!r}") from None

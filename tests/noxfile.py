@@ -29,11 +29,19 @@ def compat(session: nox.Session, peer: Peer) -> None:
     """Try the environment with a peer."""
     if not peer.supports(sys.version_info[:2]):
         session.skip(f"{peer.name} has wheels for Python {' to '.join(peer.python)} only")
-    with TemporaryDirectory() as folder:
-        constraints = Path(folder, "constraints.txt")
+    with TemporaryDirectory() as temporary:
+        constraints = Path(temporary, "constraints.txt")
         constraints.write_text("\n".join(peer.constraints()), encoding="utf-8")
-        wheel, _ = build(session, Path(folder, "dist"))
+        wheel, _ = build(session, Path(temporary, "dist"))
         session.install("--constraint", str(constraints), *peer.requirements, str(wheel))
+    if peer.alone:
+        session.install("--no-deps", "--no-build-isolation", *peer.alone)
+    for clone in peer.clones:
+        address, commit = clone.split("@")
+        folder = ROOT / "build" / "clones" / Path(address).name.lower()
+        if not folder.exists():
+            session.run("git", "clone", "--quiet", address, str(folder), external=True)
+        session.run("git", "-C", str(folder), "checkout", "--quiet", commit, external=True)
     session.chdir(TESTS)
     kernels = str(ROOT / "build" / "compat-kernels")
     session.run("python", "-m", "compat.run", peer.name, env={"ARKANOID_CACHE_DIR": kernels})
@@ -76,8 +84,9 @@ def ray(session: nox.Session) -> None:
 def lock(session: nox.Session) -> None:
     """Pin the versions that make installs; options of uv follow --, such as --upgrade.
 
-    A pin stays as it is while pyproject.toml allows it. Both files hold for every system and for
-    every Python that is supported, and agree in everything but the Gymnasium that RLlib pins.
+    A pin stays as it is while pyproject.toml allows it. The constraints hold for every system and
+    for every Python that is supported, and agree in everything but the Gymnasium that RLlib pins.
+    The requirements are the same pins with the checksums of their files.
     """
     session.chdir(ROOT)
     session.install("uv")
@@ -86,14 +95,19 @@ def lock(session: nox.Session) -> None:
         *("--no-build", "--no-annotate", "--custom-compile-command", "make lock", "--quiet"),
         *session.posargs,
     )
+    hashed = ("--generate-hashes", "--constraint")
     extras = ("--extra", "dev", "--extra", "docs", "--extra", "bench")
     session.run(*resolve, *extras, "--output-file", "constraints.txt", silent=True)
+    locked = (*hashed, "constraints.txt", "--output-file", "requirements.txt")
+    session.run(*resolve, *extras, *locked, silent=True)
     pins = Path("constraints.txt").read_text(encoding="utf-8").splitlines()
     with TemporaryDirectory() as folder:
         shared = Path(folder, "shared.txt")
         shared.write_text("\n".join(p for p in pins if not p.startswith("gymnasium==")), "utf-8")
         extras = ("--extra", "ray", "--extra", "train", "--constraint", str(shared))
         session.run(*resolve, *extras, "--output-file", "constraints-ray.txt", silent=True)
+        locked = (*hashed, "constraints-ray.txt", "--output-file", "requirements-ray.txt")
+        session.run(*resolve, *extras, *locked, silent=True)
 
 
 def build(session: nox.Session, folder: Path) -> tuple[Path, Path]:

@@ -38,13 +38,13 @@ ORDER = {
         registration
         arkanoid_env vector_env
         play
-        interface
+        interface emulator masks
         batch
         observe
         draw
         game
         levels
-        config state actions checks rules
+        config state actions checks hints rules
     """,
     "agents": """
         cli

@@ -10,11 +10,12 @@ from pathlib import Path
 from ..experiment.errors import SettingsError
 from ..experiment.runs import ModelFile
 from ..experiment.settings import Experiment
+from .arguments import add_trust
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.usage = "%(prog)s [MODEL ...] [--json] [--plots FOLDER] [--key value ...]"
+    parser.usage = "%(prog)s [MODEL ...] [--json] [--plots FOLDER] [--trust] [--key value ...]"
     parser.add_argument(
         "models",
         metavar="MODEL",
@@ -24,6 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     parser.add_argument("--plots", metavar="FOLDER", help="draw the results into this folder")
+    add_trust(parser)
     parser.epilog = (
         "The first run's own settings hold; --key value changes them, as in\n"
         """--evaluation.suites '["training", "test", "named"]' --evaluation.level_episodes 20"""
@@ -32,15 +34,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Evaluate, print and draw; return the exit status."""
-    models = [ModelFile.find(name) for name in arguments.models or [None]]
+    models = [ModelFile.find(name, arguments.trust) for name in arguments.models or [None]]
     experiment = models[0].run.experiment(overrides)
     agents = group_by_experiment(models, overrides)
     from ..learn.model import load_policy
     from ..measure.comparison import as_json, as_tables, compare
 
     policies = {
-        name: [load_policy(model.path, experiment) for model in group]
-        for name, group in agents.items()
+        name: [load_policy(model, experiment) for model in group] for name, group in agents.items()
     }
     comparison = compare(experiment, policies, lambda message: print(message, file=sys.stderr))
     described = {name: [model.describe() for model in group] for name, group in agents.items()}
@@ -51,8 +52,11 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if arguments.plots:
         from ..show.plots import plot_comparison
 
-        for path in plot_comparison(experiment, comparison, Path(arguments.plots)):
-            print(path, file=sys.stderr)
+        try:
+            for path in plot_comparison(experiment, comparison, Path(arguments.plots)):
+                print(path, file=sys.stderr)
+        except OSError as error:
+            raise SettingsError(f"{arguments.plots}: cannot be written: {error}") from None
     return 0
 
 

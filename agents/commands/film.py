@@ -1,6 +1,7 @@
 """`arkanoid film [MODEL] OUT`: a film of an agent at play; no display is needed."""
 
 import argparse
+import math
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
@@ -11,7 +12,7 @@ from .arguments import add_level, add_model
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.usage = (
-        "%(prog)s [MODEL] OUT.mp4|OUT.gif [--level LEVEL] [--seconds S] [--key value ...]"
+        "%(prog)s [MODEL] OUT.mp4|OUT.gif [--level LEVEL] [--seconds S] [--trust] [--key value ...]"
     )
     add_model(parser)
     parser.add_argument("out", metavar="OUT", help="the file, .mp4 or .gif")
@@ -23,11 +24,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Write the film; return the exit status."""
-    model = ModelFile.find(arguments.model)
+    model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.run.experiment(overrides)
     out = Path(arguments.out)
-    if arguments.seconds is not None and not arguments.seconds > 0:
-        raise SettingsError(f"--seconds must be positive, not {arguments.seconds}")
+    if arguments.seconds is not None and not 0 < arguments.seconds < math.inf:
+        raise SettingsError(f"--seconds must be a number above 0, not {arguments.seconds}")
     from ..measure.suites import WHOLE_GAMES, find_starts
     from ..show.frames import film_policy
 
@@ -35,7 +36,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..learn.model import load_policy
 
     try:
-        film_policy(experiment, load_policy(model.path, experiment), out, start, arguments.seconds)
+        film_policy(experiment, load_policy(model, experiment), out, start, arguments.seconds)
     except OSError as error:
         raise SettingsError(f"{out}: cannot be written: {error}") from None
     print(out)

@@ -3,8 +3,10 @@
 import argparse
 import os
 import sys
+from pathlib import Path
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import write_atomically
 
 _EPILOG = """\
 LEVEL is a named round, the path of a level file, or seed:N for a generated level.
@@ -50,6 +52,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         else:
             print(list_levels())
             print("\nto draw one: arkanoid levels NAME; a generated one: arkanoid levels seed:7")
+    except BrokenPipeError:
+        raise
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
@@ -77,9 +81,9 @@ def _print(names: list[str], difficulty: float) -> None:
 
 def _draw(names: list[str], difficulty: float, path: str) -> None:
     """Write a picture of levels into a file."""
-    from ...envs.draw.png import write_png
+    from ...envs.draw.png import png_bytes
     from ...envs.levels.files import CAMPAIGN
     from ...envs.play.gallery import draw_levels
 
-    write_png(path, draw_levels(names or CAMPAIGN, difficulty))
+    write_atomically(Path(path), png_bytes(draw_levels(names or CAMPAIGN, difficulty)))
     print(path)

@@ -11,6 +11,7 @@ import gymnasium as gym
 import platformdirs
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import quoted
 
 if TYPE_CHECKING:
     from ...envs.batch.replays import Replay
@@ -96,7 +97,8 @@ class _Saver:
         )
         replay.save(path)
         result = replay.result
-        print(f"score {result.score}, round {result.round}; watch it: arkanoid replay {path}")
+        again = f"arkanoid replay {quoted(path)}"
+        print(f"score {result.score}, round {result.round}; watch it: {again}")
 
 
 def free_path(path: Path) -> Path:

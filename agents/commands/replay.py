@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import write_atomically
 from ..show.film import RATES, write_film
 
 if TYPE_CHECKING:
@@ -103,10 +104,10 @@ def _export(replay: "Replay", arguments: argparse.Namespace) -> int:
         stride = max(1, math.ceil(rate / RATES[suffix]))
         write_film(path, _pictures(replay, arguments, stride), rate / stride)
     elif suffix == ".png":
-        from ...envs.draw.png import write_png
+        from ...envs.draw.png import png_bytes
 
         *_, picture = _pictures(replay, arguments, 0)
-        write_png(path, picture)
+        write_atomically(path, png_bytes(picture))
     else:
         raise SettingsError(f"{path}: exports are {', '.join(RATES)} or .png")
     print(path)

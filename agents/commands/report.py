@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ..experiment.errors import SettingsError
 from ..experiment.runs import ModelFile
+from .arguments import add_trust
 from .evaluate import group_by_experiment
 
 DEFAULT_OUT = "report.html"
@@ -12,7 +13,7 @@ DEFAULT_OUT = "report.html"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.usage = "%(prog)s RUN... [--out FILE.html|FILE.md] [--key value ...]"
+    parser.usage = "%(prog)s RUN... [--out FILE.html|FILE.md] [--trust] [--key value ...]"
     parser.add_argument(
         "runs", metavar="RUN", nargs="+", help="runs of one experiment with different seeds"
     )
@@ -22,6 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"an .html page with everything in it, or an .md page with its pictures in a folder "
         f"beside it; default: {DEFAULT_OUT}",
     )
+    add_trust(parser)
     parser.epilog = "--key value changes how the models are measured, as for `evaluate`."
 
 
@@ -30,7 +32,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     out = Path(arguments.out)
     if out.suffix not in (".html", ".md"):
         raise SettingsError(f"{out}: a report's name must end in .html or .md")
-    models = [ModelFile.find(name) for name in arguments.runs]
+    models = [ModelFile.find(name, arguments.trust) for name in arguments.runs]
     if len(group_by_experiment(models, overrides)) > 1:
         raise SettingsError(
             "a report is about one experiment: the runs differ in more than their seeds "

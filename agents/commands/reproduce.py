@@ -6,19 +6,21 @@ from typing import Any
 
 from ..experiment.errors import SettingsError
 from ..experiment.runs import RunFolder
+from .arguments import add_trust
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.usage = "%(prog)s RUN"
+    parser.usage = "%(prog)s RUN [--trust]"
     parser.add_argument("run", metavar="RUN", help="the folder of a run that has ended")
+    add_trust(parser)
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Train again beside the run; return 0 if the weights are the same, else 1."""
     if overrides:
         raise SettingsError("a run is reproduced with its own settings: give no others")
-    folder = RunFolder.of(arguments.run)
+    folder = RunFolder.of(arguments.run, arguments.trust)
     expected = folder.read_notes().get("weights")
     if expected is None:
         raise SettingsError(f"{folder.path}: the run has not ended; there is nothing to compare")

@@ -5,17 +5,19 @@ import json
 from collections.abc import Iterator
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import quoted, write_atomically
 from ..experiment.reading import describe_settings, packaged_configs
 from ..experiment.runs import ModelFile, RunFolder
 from ..experiment.settings import Experiment, load_experiment
 from ..experiment.worlds import make_worlds
+from .arguments import add_trust
 
 DEFAULT_CONFIG = "quick"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.usage = "%(prog)s [CONFIG] [--key value ...] | --resume RUN"
+    parser.usage = "%(prog)s [CONFIG] [--key value ...] | --resume RUN [--trust]"
     parser.add_argument(
         "config",
         metavar="CONFIG",
@@ -26,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--resume", metavar="RUN", help="resume the run in this folder from its checkpoint"
     )
+    add_trust(parser)
     parser.epilog = "\n".join(["settings:", *_settings_help()])
 
 
@@ -35,25 +38,23 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if arguments.resume is not None:
         if arguments.config is not None or overrides:
             raise SettingsError("--resume uses the run's own settings: give no others")
-        folder = RunFolder.of(arguments.resume)
+        folder = RunFolder.of(arguments.resume, arguments.trust)
         experiment = folder.experiment()
     else:
         experiment = load_experiment(arguments.config or DEFAULT_CONFIG, overrides)
     # The environment reads its level files: the last of what can be wrong with the settings.
     make_worlds(experiment, 1).close()
     # Only now, with all settings known to be right, come the slow imports.
-    from ..learn.training import INTERRUPTED, check_resumable, train
+    from ..learn.training import INTERRUPTED, train
 
-    resume = folder is not None
+    resumed = folder is not None
     if folder is None:
         folder = RunFolder.create(experiment)
-    else:
-        check_resumable(folder)
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
-    outcome = train(experiment, folder, resume)
+    outcome = train(experiment, folder, resumed)
     if outcome == INTERRUPTED:
         print(f"stopped; the model is {folder.model}")
-        print(f"resume   arkanoid train --resume {folder.path}")
+        print(f"resume   arkanoid train --resume {quoted(folder.path)}")
         return 130
     print(f"training: {outcome}")
     _show(experiment, folder)
@@ -66,15 +67,19 @@ def _show(experiment: Experiment, folder: RunFolder) -> None:
     from ..measure.comparison import AGENT, as_json, as_tables, compare
     from ..show.frames import film_policy
 
-    model = ModelFile.find(str(folder.path))
-    policy = load_policy(model.path, experiment)
+    model = ModelFile.find(str(folder.path), folder.trusted)
+    policy = load_policy(model, experiment)
     comparison = compare(experiment, {AGENT: [policy]})
     results = as_json(experiment, comparison, {AGENT: [model.describe()]})
-    folder.evaluation.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    film_policy(experiment, policy, folder.film)
+    try:
+        write_atomically(folder.evaluation, (json.dumps(results, indent=2) + "\n").encode())
+        film_policy(experiment, policy, folder.film)
+    except OSError as error:
+        raise SettingsError(f"{folder.path}: the results cannot be written: {error}") from None
     print(f"\n{as_tables(experiment, comparison)}\n")
-    print(f"model    {model.path}\nlogs     {folder.log}  (tensorboard --logdir {folder.log})")
-    print(f"film     {folder.film}\nagain    arkanoid evaluate {folder.path}")
+    log = quoted(folder.log)
+    print(f"model    {model.path}\nlogs     {folder.log}  (tensorboard --logdir {log})")
+    print(f"film     {folder.film}\nagain    arkanoid evaluate {quoted(folder.path)}")
 
 
 def _settings_help() -> Iterator[str]:

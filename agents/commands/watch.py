@@ -9,7 +9,7 @@ from .arguments import add_level, add_model
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.usage = "%(prog)s [MODEL] [--level LEVEL] [--key value ...]"
+    parser.usage = "%(prog)s [MODEL] [--level LEVEL] [--trust] [--key value ...]"
     add_model(parser)
     add_level(parser)
     parser.epilog = (
@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Show games until the window is closed; return the exit status."""
-    model = ModelFile.find(arguments.model)
+    model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.run.experiment(overrides)
     from ...envs.play.window import Window
     from ..measure.suites import WHOLE_GAMES, find_starts
@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..learn.model import load_policy
     from ..show.frames import can_be_smooth, frame_rate, play_frames
 
-    policy = load_policy(model.path, experiment)
+    policy = load_policy(model, experiment)
     smooth = can_be_smooth(experiment)
     window = Window("Arkanoid", frame_rate(experiment, smooth))
     try:
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
                     break
             if frame is not None:
                 print(f"seed {seed}: score {frame.score}, round {frame.round}")
-            seed += 1
+            seed = (seed + 1) % 2**32
     finally:
         window.close()
     return 0

@@ -67,7 +67,7 @@ def _hardware() -> dict[str, Any]:
         "system": platform.platform(),
         "processor": _processor(),
         "cores": os.cpu_count(),
-        "memory_gib": _memory(),
+        "memory_gib": memory_gib(),
         "byte_order": sys.byteorder,
     }
 
@@ -83,7 +83,8 @@ def _processor() -> str:
     return platform.processor() or platform.machine()
 
 
-def _memory() -> float | None:
+def memory_gib() -> float | None:
+    """Return the machine's memory in GiB, or None where the system does not tell."""
     try:
         size = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):

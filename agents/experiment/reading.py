@@ -5,6 +5,7 @@ own), or `dict[str, Any]`: a free table, whose keys are checked elsewhere.
 """
 
 import difflib
+import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -17,12 +18,14 @@ from pydantic import TypeAdapter, ValidationError
 
 from ... import configs
 from .errors import SettingsError
+from .files import read_limited
 
 T = TypeVar("T")
 
 COMMAND_LINE = "command line"
 # How the names of packaged experiments end.
 CONFIG = ".toml"
+_LARGEST_CONFIG = 2**20  # bytes
 
 _KINDS = {
     "integer": ("an integer", "a list of integers"),
@@ -131,14 +134,28 @@ def check_value(schema: type[Any], key: str, value: Any, source: str) -> None:
 
 def to_toml(settings: Any) -> str:
     """Return settings as a TOML document that `read_settings` reads back to equal ones."""
-    return tomli_w.dumps(asdict(settings))
+    return tomli_w.dumps(_plain(asdict(settings)))
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as TOML has it: without what is None, a range of seeds as its text."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items() if item is not None}
+    if isinstance(value, range):
+        return f"seeds:{value.start}-{value.stop - 1}"
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    # A number of NumPy.
+    return value.item() if hasattr(value, "item") else value
 
 
 def parse_toml_value(text: str) -> Any:
     """Return what the text means in TOML, or the text itself if it means nothing there."""
     try:
         table = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text
     # A line break in the text could smuggle in more than the one value.
     return table["value"] if set(table) == {"value"} else text
@@ -152,7 +169,7 @@ def read_toml(config: str, suffix: str = CONFIG) -> tuple[str, dict[str, Any]]:
     source, text = _read_config(config, suffix)
     try:
         return source, tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # also for huge numbers and deep nesting
         raise SettingsError(f"{source}: not a TOML file: {error}") from None
 
 
@@ -171,8 +188,8 @@ def _read_config(config: str, suffix: str) -> tuple[str, str]:
         if config in packaged_configs(suffix) and not path.is_file():
             file = resources.files(configs) / f"{config}{suffix}"
             return f"config {config!r}", file.read_text(encoding="utf-8")
-        return config, path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
+        return config, read_limited(path, _LARGEST_CONFIG).decode()
+    except ValueError as error:
         raise SettingsError(f"{config}: not a TOML file: {error}") from None
     except OSError as error:
         names = ", ".join(packaged_configs(suffix))
@@ -218,6 +235,11 @@ def _explained(
     value = values[table] if key == table else values[table][names[0]]
     origin = COMMAND_LINE if key in changed else source
     if problem["type"] == "unexpected_keyword_argument":
+        if key in known:
+            return SettingsError(
+                f"{source}: {key!r} in quotation marks is one word; write it without them, or "
+                f"in its table [{key.partition('.')[0]}]"
+            )
         return _unknown(key, known, origin)
     expected = known[key].expected if key in known else "a table"
     return SettingsError(f"{origin}: {key!r} must be {expected}, not {_shown(value)}")

@@ -3,6 +3,8 @@
 import hashlib
 import json
 import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from importlib import resources
@@ -12,17 +14,41 @@ from typing import Any
 
 from .. import pretrained
 from .errors import SettingsError
-from .files import write_atomically
+from .files import cause, read_limited, remove_unfinished, write_atomically
 from .provenance import describe_origin
-from .reading import to_toml
+from .reading import read_toml, to_toml
 from .settings import Experiment, load_experiment
+
+_PACKAGE = __name__.partition(".")[0]
+# A run's notes take about a thousand bytes, and eighty for each session.
+_LARGEST_NOTES = 2**20
+# What is read of the notes, and its type.
+_TEXT = (str, type(None))
+_NOTES: dict[str, tuple[type, ...]] = {
+    "outcome": _TEXT,
+    "weights": _TEXT,
+    "timesteps": (int,),
+    "sessions": (list,),
+    "versions": (dict, type(None)),
+    "git": (dict, type(None)),
+    "hardware": (dict, type(None)),
+}
+_SESSION = {"started": (str,), "seconds": (int, float), "from": (int,), "to": (int,)}
 
 
 @dataclass(frozen=True)
 class RunFolder:
-    """Where a run keeps its files; the properties name them."""
+    """Where a run keeps its files; the properties name them.
+
+    Attributes:
+        path: of the folder.
+        trusted: whether reading the run may run its author's code: import the module that its
+            ``env_id`` names, and unpickle its model. True for runs that this process made, and
+            where the user says so.
+    """
 
     path: Path
+    trusted: bool = False
 
     @classmethod
     def create(cls, experiment: Experiment) -> "RunFolder":
@@ -32,8 +58,8 @@ class RunFolder:
         """
         stem = f"{experiment.name}-seed{experiment.seed}-{datetime.now():%Y%m%d-%H%M%S}"
         try:
-            run = cls(_new_folder(Path(experiment.output), stem))
-            run.config.write_text(to_toml(experiment), encoding="utf-8")
+            run = cls(_new_folder(Path(experiment.output), stem), trusted=True)
+            write_atomically(run.config, to_toml(experiment).encode())
             run.add_notes(
                 **describe_origin(), seed=experiment.seed, outcome="unfinished", sessions=[]
             )
@@ -42,9 +68,9 @@ class RunFolder:
         return run
 
     @classmethod
-    def of(cls, folder: str) -> "RunFolder":
+    def of(cls, folder: str, trusted: bool = False) -> "RunFolder":
         """Return the run in a folder; raise `SettingsError` if there is none."""
-        run = cls(Path(folder))
+        run = cls(Path(folder), trusted)
         if not run.config.is_file():
             raise SettingsError(
                 f"{folder}: no training run there; give the folder of a run, which holds "
@@ -53,15 +79,69 @@ class RunFolder:
         return run
 
     def experiment(self, overrides: list[tuple[str, str]] | None = None) -> Experiment:
-        """Return the run's experiment, changed by overrides as `load_experiment` takes them."""
+        """Return the run's experiment, changed by overrides as `load_experiment` takes them.
+
+        Raises `SettingsError` if the settings are wrong, or if their ``env_id`` names a module and
+        the run is not trusted.
+        """
+        if not self.trusted:
+            self._refuse_module()
         return load_experiment(str(self.config), overrides or [])
 
+    def _refuse_module(self) -> None:
+        """Raise `SettingsError` if reading the settings would import a module."""
+        _, table = read_toml(str(self.config))
+        module, colon, _ = str(table.get("env_id", "")).partition(":")
+        if colon and module != _PACKAGE:
+            raise SettingsError(
+                f"{self.config}: 'env_id' = {table['env_id']!r} imports the module {module!r}, "
+                f"which can run any command on this computer; add --trust if you trust its author"
+            )
+
     def read_notes(self) -> dict[str, Any]:
-        """Return what `add_notes` has written; nothing if the file is missing."""
+        """Return what `add_notes` has written; nothing if the file is missing.
+
+        Raises `SettingsError` if the file is damaged.
+        """
         if not self.notes.is_file():
             return {}
-        notes: dict[str, Any] = json.loads(self.notes.read_text(encoding="utf-8"))
+        try:
+            notes: dict[str, Any] = json.loads(read_limited(self.notes, _LARGEST_NOTES))
+            _check_types(notes, _NOTES)
+            for session in notes.get("sessions", []):
+                _check_types(session, _SESSION, complete=True)
+        except OSError as error:
+            raise SettingsError(f"{self.notes}: cannot be read: {cause(error)}") from None
+        except (ValueError, RecursionError) as error:
+            raise SettingsError(
+                f"{self.notes}: damaged ({error}); replace it with a copy or remove it; it says "
+                f"only how the run was made and how it ended"
+            ) from None
         return notes
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other processes from training this run.
+
+        The lock ends with the process, even if that is killed. Raises `SettingsError` if another
+        process holds it.
+        """
+        from filelock import FileLock, Timeout
+
+        lock = FileLock(self.path / "lock", timeout=0)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise SettingsError(
+                f"{self.path}: another process is training this run; wait until it ends, or stop it"
+            ) from None
+        except OSError as error:
+            raise SettingsError(f"{self.path}: cannot be written to: {cause(error)}") from None
+        try:
+            remove_unfinished(self.path)
+            yield
+        finally:
+            lock.release()
 
     def add_notes(self, **values: Any) -> None:
         """Write down more about the run; a value replaces an earlier one of its name."""
@@ -138,18 +218,20 @@ class ModelFile:
     path: Path
 
     @classmethod
-    def find(cls, name: str | None) -> "ModelFile":
+    def find(cls, name: str | None, trusted: bool = False) -> "ModelFile":
         """Return the model in the folder of a run, a model file itself, or the packaged agent.
 
         Args:
             name: of a folder: its best model by validation, or else its last one; of a model file
                 in such a folder: this one. None: the agent that comes with the package.
+            trusted: whether the run is, see `RunFolder`.
 
         Raises:
             SettingsError: there is no model.
         """
         path = pretrained_run() if name is None else Path(name)
-        run = RunFolder.of(str(path if path.is_dir() or not path.exists() else path.parent))
+        folder = path if path.is_dir() or not path.exists() else path.parent
+        run = RunFolder.of(str(folder), trusted)
         wanted = path
         if path.is_dir():
             wanted = run.best if run.best.is_file() else run.model
@@ -162,11 +244,12 @@ class ModelFile:
 
     def describe(self) -> dict[str, Any]:
         """Return what tells this model from others, as JSON takes it."""
-        digest = hashlib.sha256(self.path.read_bytes()).hexdigest()
+        with self.path.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256")
         return {
             "run": self.run.path.resolve().name,
             "file": self.path.name,
-            "sha256": digest,
+            "sha256": digest.hexdigest(),
             "seed": self.run.experiment().seed,
         }
 
@@ -174,6 +257,21 @@ class ModelFile:
 def pretrained_run() -> Path:
     """Return the folder of the agent that comes with the package."""
     return Path(str(resources.files(pretrained)))
+
+
+def _check_types(table: Any, types: Mapping[str, tuple[type, ...]], complete: bool = False) -> None:
+    """Raise ValueError unless the values of a table have these types.
+
+    With ``complete`` no key may be missing. Types are compared exactly: Python takes `true` for an
+    integer.
+    """
+    if not isinstance(table, dict):
+        raise ValueError("not a table")
+    for key, accepted in types.items():
+        if key not in table and not complete:
+            continue
+        if type(table.get(key)) not in accepted:
+            raise ValueError(f"{key!r} is {table.get(key)!r:.40}")
 
 
 def _new_folder(parent: Path, stem: str) -> Path:

@@ -20,6 +20,13 @@ from .reading import read_settings, read_toml
 
 # NumPy's legacy generator, which stable-baselines3 seeds, takes seeds up to 2**32 - 1.
 _LARGEST_SEED = 2**32 - 1
+# Far beyond what anyone needs, and still within what counters and arrays can hold. A typing error
+# gets a sentence, and no file from somebody else can ask for all of the memory.
+_MANY = 1_000_000
+_MOST_DECISIONS = 10**15
+_WIDEST = 16_384
+_DEEPEST = 32
+_MOST_THREADS = 1024
 
 _CHECKED = ConfigDict(extra="forbid", allow_inf_nan=False)
 
@@ -28,7 +35,9 @@ Integer = Annotated[int, Strict()]
 Number = Annotated[float, Strict()]
 Switch = Annotated[bool, Strict()]
 
-Count = Annotated[Integer, Field(ge=1)]
+Count = Annotated[Integer, Field(ge=1, le=_MANY)]
+Decisions = Annotated[Integer, Field(ge=1, le=_MOST_DECISIONS)]
+Width = Annotated[Integer, Field(ge=1, le=_WIDEST)]
 Seed = Annotated[Integer, Field(ge=0, le=_LARGEST_SEED)]
 Positive = Annotated[Number, Field(gt=0)]
 NotNegative = Annotated[Number, Field(ge=0)]
@@ -47,11 +56,11 @@ class Training:
     """How much is played and by how many."""
 
     worlds: Count = Field(default=64, description="worlds that are played at once")
-    timesteps: Count = Field(default=1_000_000, description="decisions of all worlds together")
-    torch_threads: Count = Field(
+    timesteps: Decisions = Field(default=1_000_000, description="decisions of all worlds together")
+    torch_threads: Annotated[Integer, Field(ge=1, le=_MOST_THREADS)] = Field(
         default=1, description="threads of torch; the weights' last bits depend on it"
     )
-    checkpoint_every: Count = Field(
+    checkpoint_every: Decisions = Field(
         default=100_000,
         description="decisions between two checkpoints, from which a killed run resumes",
     )
@@ -67,7 +76,7 @@ class Ppo:
         description="learning rate and clip range over time; linear: they fall to 0",
     )
     n_steps: Count = Field(default=128, description="decisions of each world between two updates")
-    batch_size: Annotated[Integer, Field(ge=2)] = Field(
+    batch_size: Annotated[Integer, Field(ge=2, le=_MOST_DECISIONS)] = Field(
         default=1024, description="decisions in one gradient step"
     )
     n_epochs: Count = Field(
@@ -95,17 +104,25 @@ class Network:
         "convolutions; planes: `grid` or `rgb` through convolutions; nature: `rgb` through those "
         "of Mnih et al. (2015), large and slow; auto: what suits the observation",
     )
-    channels: tuple[Count, ...] = Field(
+    channels: tuple[Width, ...] = Field(
         default=(16, 32),
         description="of the convolutions of lattice and planes; each halves the picture",
     )
-    embedding: Count = Field(default=64, description="features that the convolutions return")
-    hidden: tuple[Count, ...] = Field(
+    embedding: Width = Field(default=64, description="features that the convolutions return")
+    hidden: tuple[Width, ...] = Field(
         default=(64, 64), description="widths of the policy's layers, and of the value function's"
     )
     activation: Literal["tanh", "relu", "elu", "silu"] = Field(
         default="tanh", description="function between the layers"
     )
+
+    def __post_init__(self) -> None:
+        for name in ("channels", "hidden"):
+            layers = len(getattr(self, name))
+            if layers > _DEEPEST:
+                raise SettingsError(
+                    f"'network.{name}' must have at most {_DEEPEST} layers, not {layers}"
+                )
 
 
 @dataclass(frozen=True, config=_CHECKED)
@@ -228,10 +245,18 @@ class Experiment:
         except (gym.error.Error, ImportError) as error:
             raise SettingsError(f"'env_id' = {self.env_id!r}: {error}") from None
         except (TypeError, ValueError) as error:
+            if not self.env:
+                raise SettingsError(f"'env_id' = {self.env_id!r}: {error}") from None
             raise SettingsError(f"{self.env_id} refuses the [env] table: {error}") from None
 
+    @cached_property
+    def game(self) -> Config:
+        """The configuration for measuring and showing: whole games, whatever ends an episode."""
+        return replace(self.config, episodic_life=False)
+
     def __post_init__(self) -> None:
-        if not self.name or not set(self.name).isdisjoint('/\\:*?"<>|'):
+        forbidden = not set(self.name).isdisjoint('/\\:*?"<>|')
+        if not self.name or forbidden or not self.name.isprintable():
             raise SettingsError(f"'name' becomes a folder's name, and {self.name!r} cannot be one")
         if not self.output:
             raise SettingsError("'output' must name a folder ('.' is the current one)")
@@ -245,8 +270,13 @@ class Experiment:
         self._check_features()
 
     def _check_features(self) -> None:
-        """Refuse features that do not suit the observation."""
+        """Refuse observations that no network here takes, and features that do not suit one."""
         observation = self.config.observation
+        if observation == "dict" or self.config.channels == "last":
+            raise SettingsError(
+                "'env.observation' = 'dict' and 'env.channels' = 'last' are for other trainers: "
+                "the networks here take one array, with the channels first"
+            )
         suited = {"lattice": ("vector",), "planes": ("grid", "rgb"), "nature": ("rgb",)}
         wanted = suited.get(self.network.features)
         if wanted is not None and observation not in wanted:

@@ -32,7 +32,8 @@ def make_worlds(
         render_mode: as for `gym.make_vec`.
 
     Raises:
-        SettingsError: the environment refuses its arguments.
+        SettingsError: the environment refuses its arguments, or so many worlds do not fit into
+            memory.
     """
     resolved = experiment.config if config is None else config
     arguments = {
@@ -51,3 +52,5 @@ def make_worlds(
         )
     except (TypeError, ValueError, gym.error.Error) as error:
         raise SettingsError(f"{experiment.env_id} refuses the [env] table: {error}") from error
+    except MemoryError:
+        raise SettingsError(f"not enough memory for {num_worlds:,} worlds at once") from None

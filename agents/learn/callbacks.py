@@ -30,12 +30,17 @@ class GameStatistics(BaseCallback):
 class ProgressBar(BaseCallback):
     """Shows decisions per second and the latest episodes' mean return, bricks and rounds."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._bar: Any = None
+
     def _on_training_start(self) -> None:
         # Rollouts are played to their end: the last one may exceed the budget.
         rollout = self.model.n_steps * self.training_env.num_envs  # type: ignore[attr-defined]
+        total = math.ceil(self.locals["total_timesteps"] / rollout) * rollout
         self._bar = tqdm(
             initial=self.model.num_timesteps,
-            total=math.ceil(self.locals["total_timesteps"] / rollout) * rollout,
+            total=max(total, self.model.num_timesteps),
             unit=" decisions",
             unit_scale=True,
             # A terminal redraws the bar; a file gets few lines.
@@ -52,7 +57,12 @@ class ProgressBar(BaseCallback):
         self._bar.set_postfix(shown, refresh=False)
 
     def _on_training_end(self) -> None:
-        self._bar.close()
+        self.close()
+
+    def close(self) -> None:
+        """End the line of the bar, also where an error ends the training."""
+        if self._bar is not None:
+            self._bar.close()
 
 
 class StopRequest(BaseCallback):

@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..experiment.files import write_atomically
+from ..experiment.errors import SettingsError
+from ..experiment.files import cause, read_limited, write_atomically
 
 STEP = "timesteps"
+# Some five hundred bytes a line, and a line for each rollout.
+_LARGEST = 2**28
 
 
 class CurveWriter:
@@ -27,7 +30,7 @@ class CurveWriter:
         self, key_values: dict[str, Any], key_excluded: dict[str, Any], step: int = 0
     ) -> None:
         """Append the numbers among the values, with their step."""
-        numbers = {key: float(value) for key, value in key_values.items() if _is_number(value)}
+        numbers = {key: float(value) for key, value in key_values.items() if _has_number(value)}
         self._file.write(_line({STEP: int(step), **dict(sorted(numbers.items()))}))
         self._file.flush()
 
@@ -37,21 +40,50 @@ class CurveWriter:
 
 
 def read_curve(path: Path) -> list[dict[str, Any]]:
-    """Return the lines of a curve's file, without a last one that a kill cut short."""
+    """Return the lines of a curve's file; without a last one that a kill cut short.
+
+    Raises `SettingsError` if the file cannot be read or another line is damaged.
+    """
+    try:
+        content = read_limited(path, _LARGEST) if path.is_file() else b""
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be read: {cause(error)}") from None
+    except ValueError as error:
+        raise SettingsError(f"{path}: {error}: not a learning curve") from None
     rows = []
-    for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else []:
+    lines = content.split(b"\n")
+    for number, line in enumerate(lines[:-1], 1):
         try:
-            rows.append(json.loads(line))
-        except json.JSONDecodeError:
-            break
+            rows.append(_row(line))
+        except (ValueError, RecursionError):
+            # After a power cut the last line can be complete and wrong.
+            if number < len(lines) - 1:
+                raise SettingsError(
+                    f"{path}: line {number} is damaged: remove it to use the other lines"
+                ) from None
     return rows
+
+
+def _row(line: bytes) -> dict[str, Any]:
+    """Return a line's numbers; raise ValueError if it has something else."""
+    row = json.loads(line)
+    if not isinstance(row, dict) or type(row.get(STEP)) is not int:
+        raise ValueError
+    if not all(is_number(value) for value in row.values()):
+        raise ValueError
+    return row
+
+
+def is_number(value: Any) -> bool:
+    """Tell whether a value that was read is a number that an array can hold."""
+    return type(value) is float or (type(value) is int and -(2**63) <= value < 2**63)
 
 
 def _line(row: dict[str, Any]) -> str:
     return json.dumps(row) + "\n"
 
 
-def _is_number(value: Any) -> bool:
+def _has_number(value: Any) -> bool:
     try:
         float(value)
     except (TypeError, ValueError):

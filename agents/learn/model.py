@@ -1,31 +1,48 @@
 """PPO: making a model, saving and loading it, and using it as a policy."""
 
+import io
+import itertools
+import math
+import zipfile
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import torch
 from numpy.typing import NDArray
 from stable_baselines3 import PPO
+from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
 from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import VecEnv
 
-from ..experiment.files import replace_atomically
+from ..experiment.errors import SettingsError
+from ..experiment.files import write_atomically
+from ..experiment.provenance import memory_gib
+from ..experiment.runs import ModelFile
 from ..experiment.settings import Experiment, Ppo
+from ..experiment.worlds import make_worlds, native
 from ..measure.policy import Policy
 from .networks import ACTIVATIONS, extractor_arguments
+from .tensors import is_like, read_entry, read_tensors
 
 # What stable-baselines3 would save, and only a training needs.
 _OF_THE_TRAINING = ("_last_obs", "_last_episode_starts", "ep_info_buffer", "ep_success_buffer")
 
+# The file of the weights in stable-baselines3's zip file.
+_WEIGHTS = "policy.pth"
+
 
 def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
-    """Return an untrained PPO; all random numbers come from the experiment's seed."""
+    """Return an untrained PPO; all random numbers come from the experiment's seed.
+
+    Raises `SettingsError` if what it collects between two updates does not fit into memory.
+    """
     torch.set_num_threads(experiment.training.torch_threads)
-    ppo, network = experiment.ppo, experiment.network
-    observation = experiment.config.observation
-    features = extractor_arguments(network, observation, venv.get_attr("layout", 0)[0])
+    ppo = experiment.ppo
+    _check_memory(experiment, venv)
     return PPO(
-        "CnnPolicy" if observation == "rgb" else "MlpPolicy",
+        "CnnPolicy" if experiment.config.observation == "rgb" else "MlpPolicy",
         venv,
         learning_rate=_scheduled(ppo, ppo.learning_rate),
         n_steps=ppo.n_steps,
@@ -37,11 +54,7 @@ def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
         ent_coef=ppo.ent_coef,
         vf_coef=ppo.vf_coef,
         max_grad_norm=ppo.max_grad_norm,
-        policy_kwargs={
-            "net_arch": list(network.hidden),
-            "activation_fn": ACTIVATIONS[network.activation],
-            **features,
-        },
+        policy_kwargs=_policy_arguments(experiment, venv.get_attr("layout", 0)[0]),
         seed=experiment.seed,
         device="cpu",
     )
@@ -57,19 +70,25 @@ def save_model(model: PPO, path: Path) -> None:
     policy.optimizer = policy.optimizer_class(
         policy.parameters(), lr=model.lr_schedule(1.0), **policy.optimizer_kwargs
     )
+    buffer = io.BytesIO()
     try:
-        replace_atomically(
-            path, lambda unfinished: model.save(unfinished, exclude=_OF_THE_TRAINING)
-        )
+        model.save(buffer, exclude=_OF_THE_TRAINING)
     finally:
         policy.optimizer = used
+    write_atomically(path, buffer.getbuffer())
 
 
-def load_policy(path: Path, experiment: Experiment) -> Policy:
-    """Return a saved model as a policy that plays as the experiment's evaluation says."""
+def load_policy(model: ModelFile, experiment: Experiment) -> Policy:
+    """Return the saved model as a policy that plays as the experiment's evaluation says.
+
+    The network is built from the run's settings, and only its weights are read from the file. If
+    the run is trusted, stable-baselines3 unpickles the file instead, which can hold any network.
+    Raises `SettingsError` if the file cannot be read or holds another network.
+    """
     torch.set_num_threads(experiment.training.torch_threads)
-    model = PPO.load(path, device="cpu")
-    return ModelPolicy(model, experiment.evaluation.deterministic, experiment.evaluation.seed)
+    network = _unpickled(model.path) if model.run.trusted else _rebuilt(model, experiment)
+    settings = experiment.evaluation
+    return ModelPolicy(network, settings.deterministic, settings.seed)
 
 
 class ModelPolicy:
@@ -81,20 +100,133 @@ class ModelPolicy:
         seed: of the draws, which leave torch's own random numbers alone.
     """
 
-    def __init__(self, model: PPO, deterministic: bool, seed: int) -> None:
+    def __init__(self, model: PPO | BasePolicy, deterministic: bool, seed: int) -> None:
         self._model = model
         self._deterministic = deterministic
         self._random = torch.Generator().manual_seed(seed).get_state()
 
     def __call__(self, observations: NDArray[Any], worlds: NDArray[Any]) -> NDArray[Any]:
-        """Return the actions for observations [n, ...]."""
-        if self._deterministic:
-            return self._model.predict(observations, deterministic=True)[0]
-        with torch.random.fork_rng(devices=[]):
-            torch.random.set_rng_state(self._random)
-            actions = self._model.predict(observations, deterministic=False)[0]
-            self._random = torch.random.get_rng_state()
-        return actions
+        """Return the actions for observations [n, ...].
+
+        Raises `SettingsError` if the network's output is not finite, or it cannot take these
+        observations.
+        """
+        try:
+            if self._deterministic:
+                return self._model.predict(observations, deterministic=True)[0]
+            with torch.random.fork_rng(devices=[]):
+                torch.random.set_rng_state(self._random)
+                actions = self._model.predict(observations, deterministic=False)[0]
+                self._random = torch.random.get_rng_state()
+            return actions
+        except ValueError as error:
+            reason = str(error).strip().partition("\n")[0]
+            raise SettingsError(f"the model cannot play: {reason}") from None
+
+
+class _UnfilledPolicy(ActorCriticPolicy):
+    """A network without weights, into which the weights of a file are put.
+
+    Built under ``torch.device("meta")``, it takes no memory, however large it is.
+    """
+
+    @property
+    def device(self) -> torch.device:
+        """Where the weights are; before there are any, where they will be."""
+        first = next(self.parameters(), None)
+        return torch.device("meta") if first is None else first.device
+
+
+def _rebuilt(model: ModelFile, experiment: Experiment) -> BasePolicy:
+    """Return the run's network with the weights of the file."""
+    # An evaluation can change the game, but not the network.
+    experiment = replace(experiment, network=model.run.experiment().network)
+    worlds = make_worlds(experiment, 1)
+    try:
+        observations, actions = worlds.single_observation_space, worlds.single_action_space
+        layout = native(worlds).layout
+    finally:
+        worlds.close()
+    with torch.device("meta"):
+        policy = _UnfilledPolicy(
+            observations,
+            actions,
+            lambda _: 1.0,
+            ortho_init=False,
+            **_policy_arguments(experiment, layout),
+        )
+    try:
+        weights = _read_weights(model.path, policy.state_dict())
+    except Exception as error:  # a damaged file can raise anything
+        raise SettingsError(
+            f"{model.path}: the weights cannot be read ({error}); the file must hold the network "
+            f"of the run in its folder. With --trust, stable-baselines3 reads any model, which can "
+            f"run code that its author put into it"
+        ) from None
+    policy.load_state_dict(weights, assign=True)
+    policy.set_training_mode(False)
+    return policy
+
+
+def _read_weights(path: Path, expected: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
+    """Return the weights in a model's file; raise ValueError if they do not fit ``expected``."""
+    size = sum(tensor.numel() * tensor.element_size() for tensor in expected.values())
+    # Each tensor also has a name, a header and padding.
+    limit = size + 4096 * (len(expected) + 1)
+    with zipfile.ZipFile(path) as archive:
+        if _WEIGHTS not in archive.namelist():
+            raise ValueError(f"there is no {_WEIGHTS} in it")
+        weights = read_tensors(read_entry(archive, _WEIGHTS, limit))
+    if not isinstance(weights, dict) or weights.keys() != expected.keys():
+        raise ValueError("they belong to another network")
+    for name, tensor in weights.items():
+        if not is_like(tensor, expected[name]):
+            raise ValueError(f"{name} belongs to another network")
+        if not torch.isfinite(tensor).all():
+            raise ValueError(f"{name} has values that are not finite")
+    # Copies are aligned in memory as in a trained network, so that sums round in the same way.
+    return {name: tensor.clone() for name, tensor in weights.items()}
+
+
+def _unpickled(path: Path) -> BasePolicy:
+    """Return the network in a file; reading it can run any code."""
+    try:
+        return PPO.load(path, device="cpu").policy
+    except Exception as error:  # unpickling can raise anything
+        raise SettingsError(f"{path}: stable-baselines3 cannot read it: {error}") from None
+
+
+def _policy_arguments(experiment: Experiment, layout: Mapping[str, slice]) -> dict[str, Any]:
+    """Return stable-baselines3's ``policy_kwargs``."""
+    network = experiment.network
+    return {
+        "net_arch": list(network.hidden),
+        "activation_fn": ACTIVATIONS[network.activation],
+        **extractor_arguments(network, experiment.config.observation, layout),
+    }
+
+
+def _check_memory(experiment: Experiment, venv: VecEnv) -> None:
+    """Refuse what does not fit into the machine's memory; Linux would kill the process."""
+    space, memory = venv.observation_space, memory_gib()
+    if memory is None or space.shape is None or space.dtype is None:
+        return
+    size = math.prod(space.shape)
+    decisions = experiment.ppo.n_steps * experiment.training.worlds
+    rollouts = decisions * size * space.dtype.itemsize / 2**30
+    if rollouts > memory:
+        raise SettingsError(
+            f"'ppo.n_steps' times 'training.worlds' are {decisions:,} decisions, whose observations"
+            f" take {rollouts:,.0f} GiB, and this machine has {memory:,.0f}"
+        )
+    # Two networks; each weight also has a gradient and Adam's two moments.
+    pairs = itertools.pairwise((size, *experiment.network.hidden))
+    layers = 2 * 4 * 4 * sum(one * other for one, other in pairs) / 2**30
+    if layers > memory:
+        raise SettingsError(
+            f"'network.hidden' = {list(experiment.network.hidden)} takes {layers:,.0f} GiB, and "
+            f"this machine has {memory:,.0f}"
+        )
 
 
 def _scheduled(ppo: Ppo, start: float) -> float | LinearSchedule:

@@ -46,13 +46,15 @@ class PeriodicValidation(BaseCallback):
         state.setdefault("due", self._settings.every)
         state.setdefault("best", None)
         state.setdefault("worse", 0)
+        state.setdefault("latest", -1)
         self._on_best = on_best
         self._stop = stop
         self._judge = judge
         levels = self._settings.levels
         self._whole_games = not levels
         self._starts = find_starts(experiment, levels) if levels else (WHOLE_GAMES,)
-        self._worlds = make_worlds(experiment, len(self._starts) * self._settings.episodes)
+        num_worlds = len(self._starts) * self._settings.episodes
+        self._worlds = make_worlds(experiment, num_worlds, experiment.game)
 
     def _on_rollout_start(self) -> None:
         if self.model.num_timesteps >= self._state["due"]:
@@ -60,6 +62,11 @@ class PeriodicValidation(BaseCallback):
 
     def _on_step(self) -> bool:
         return True
+
+    def finish(self) -> None:
+        """Measure the policy at the end, unless the run was resumed there and has measured it."""
+        if self.model.num_timesteps != self._state["latest"]:
+            self.measure()
 
     def measure(self) -> None:
         """Play, log, report the model if it is the best, and ask for the end if it is time."""
@@ -69,6 +76,7 @@ class PeriodicValidation(BaseCallback):
             self.logger.record(f"validation/{name}", means[name])
         self.logger.dump(step)
         state, settings = self._state, self._settings
+        state["latest"] = step
         state["due"] = (step // settings.every + 1) * settings.every
         value, best = means[settings.best], state["best"]
         state["worse"] = 0 if best is None or value > best else state["worse"] + 1

@@ -1,6 +1,8 @@
 """A training run, from its beginning or a checkpoint to its end."""
 
+import errno
 import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,13 +15,14 @@ from torch.utils.tensorboard import SummaryWriter
 
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
+from ..experiment.files import cause, quoted
 from ..experiment.provenance import weights_hash
 from ..experiment.runs import RunFolder
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
 from ..measure.episodes import adapt
 from .callbacks import GameStatistics, ProgressBar, StopRequest
-from .checkpoints import Checkpoints, read_checkpoint, restore
+from .checkpoints import Checkpoints, resume
 from .curves import CurveWriter
 from .model import make_model, save_model
 from .periodic_validation import Judge, PeriodicValidation
@@ -32,47 +35,80 @@ FINISHED = "finished"
 def train(
     experiment: Experiment,
     folder: RunFolder,
-    resume: bool = False,
+    resumed: bool = False,
     on_measure: Judge | None = None,
 ) -> str:
     """Train until the budget is spent, validation ends it, or Ctrl-C; return how it ended.
 
     The outcome is `FINISHED`, `INTERRUPTED` or validation's reason; ``run.json`` has it, too.
-    Ctrl-C ends the training between two decisions and leaves a checkpoint for ``resume``; a second
+    Ctrl-C ends the training between two decisions and leaves a checkpoint to resume from; a second
     one raises KeyboardInterrupt.
 
     Args:
         experiment: the run's settings.
         folder: gets model, checkpoint, curves and notes.
-        resume: whether to begin with the folder's checkpoint.
+        resumed: whether to begin with the folder's checkpoint.
         on_measure: gets each validation; it may return a reason to end the training.
 
     Raises:
-        SettingsError: the environment refuses its arguments, or there is no checkpoint.
+        SettingsError: the environment refuses its arguments, there is no checkpoint or a damaged
+            one, another process trains this run, or its files cannot be written.
     """
-    venv = adapt(make_worlds(experiment, experiment.training.worlds))
+    with folder.locked():
+        if resumed:
+            check_resumable(folder)
+        venv = adapt(make_worlds(experiment, experiment.training.worlds))
+        try:
+            with _quiet_writer():
+                return _train(experiment, folder, venv, resumed, on_measure)
+        except OSError as error:
+            raise SettingsError(_cannot_write(folder, error)) from error
+        finally:
+            venv.close()
+
+
+def _cannot_write(folder: RunFolder, error: OSError) -> str:
+    """Return a sentence that says what stopped a training and how to go on."""
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+    reason = "the disk is full" if full else f"writing failed ({cause(error)})"
+    start = "free some space, then go on with" if full else "go on with"
+    if folder.checkpoint.is_file():
+        return f"{folder.path}: {reason}; {start}: arkanoid train --resume {quoted(folder.path)}"
+    return f"{folder.path}: {reason} before the first checkpoint; start a new run"
+
+
+@contextmanager
+def _quiet_writer() -> Iterator[None]:
+    """Keep TensorBoard's thread from printing an error that the training raises, too."""
+    previous = threading.excepthook
+
+    def hook(arguments: threading.ExceptHookArgs) -> None:
+        if not isinstance(arguments.exc_value, OSError):
+            previous(arguments)
+
+    threading.excepthook = hook
     try:
-        return _train(experiment, folder, venv, resume, on_measure)
+        yield
     finally:
-        venv.close()
+        threading.excepthook = previous
 
 
 def _train(
     experiment: Experiment,
     folder: RunFolder,
     venv: GymnasiumVecEnv,
-    resume: bool,
+    resumed: bool,
     on_measure: Judge | None,
 ) -> str:
-    state = read_checkpoint(folder.checkpoint) if resume else None
-    callback_state: dict[str, Any] = state["callbacks"] if state is not None else {}
     model = make_model(experiment, venv)
-    stop = StopRequest()
-    validation = _validation(experiment, folder, callback_state, stop, on_measure)
-    if state is not None:
-        restore(state, model, venv)
+    model.set_logger(Logger(str(folder.log), []))
+    callback_state: dict[str, Any] = {}
+    if resumed:
+        callback_state = resume(folder.checkpoint, model, venv)
     else:
         venv.set_options(stage_options(experiment.curriculum, 0, venv.num_envs))
+    stop = StopRequest()
+    validation = _validation(experiment, folder, callback_state, stop, on_measure)
     first, started = model.num_timesteps, time.time()
     checkpoints = Checkpoints(
         folder.checkpoint,
@@ -85,23 +121,35 @@ def _train(
     stages = Stages(experiment, venv, callback_state)
     callbacks: list[BaseCallback] = [GameStatistics(), stages]
     callbacks += [validation] if validation is not None else []
-    callbacks += [checkpoints, ProgressBar(), stop]
-    model.set_logger(_logger(folder, first))
+    progress = ProgressBar()
+    callbacks += [checkpoints, progress, stop]
     try:
+        # Only now, with a state that fits: they remove what was written after the checkpoint.
+        model.logger.output_formats.append(_Curve(folder, first))
+        model.logger.output_formats.append(TensorBoard(str(folder.log), first))
         with _on_interrupt(lambda: stop.request(INTERRUPTED)):
             model.learn(
                 experiment.training.timesteps - first,
                 callback=callbacks,
-                reset_num_timesteps=state is None,
+                reset_num_timesteps=not resumed,
             )
         complete = stop.reason is None
         if complete and validation is not None:
-            validation.measure()
+            validation.finish()
         last = checkpoints.finish(complete)
+    except ValueError as error:
+        # This is what torch says of probabilities that are not finite.
+        if "found invalid values" not in str(error):
+            raise
+        raise SettingsError(
+            f"{folder.path}: the training has diverged: its weights are too large; start a "
+            f"new run with a smaller 'ppo.learning_rate' ({experiment.ppo.learning_rate:g})"
+        ) from None
     finally:
-        model.logger.close()
+        progress.close()
         if validation is not None:
             validation.close()
+        model.logger.close()
     outcome = stop.reason or FINISHED
     save_model(model, folder.model)
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
@@ -111,11 +159,12 @@ def _train(
 
 def check_resumable(folder: RunFolder) -> None:
     """Raise `SettingsError` if the run has ended."""
-    outcome = folder.read_notes().get("outcome")
+    # If the notes are lost, the checkpoint is enough.
+    outcome = folder.read_notes().get("outcome", "unfinished")
     if outcome not in ("unfinished", INTERRUPTED):
         raise SettingsError(
             f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
-            f"to measure it: arkanoid evaluate {folder.path}"
+            f"to measure it: arkanoid evaluate {quoted(folder.path)}"
         )
 
 
@@ -135,12 +184,6 @@ def _validation(
         stop.request,
         on_measure,
     )
-
-
-def _logger(folder: RunFolder, first: int) -> Logger:
-    """Return a logger to TensorBoard and to the curves' file, from decision ``first`` on."""
-    writers: list[KVWriter] = [TensorBoard(str(folder.log), first), _Curve(folder, first)]
-    return Logger(str(folder.log), writers)
 
 
 class TensorBoard(TensorBoardOutputFormat):

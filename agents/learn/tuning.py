@@ -2,13 +2,16 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
+from ...envs.config import Config
+from ...envs.hints import BATCH_KEYWORDS, keyword_hint
 from ..experiment.errors import SettingsError
+from ..experiment.files import cause
 from ..experiment.reading import check_value, read_toml
 from ..experiment.runs import RunFolder
 from ..experiment.settings import BEST, Experiment, load_experiment
@@ -16,6 +19,7 @@ from ..experiment.settings import BEST, Experiment, load_experiment
 if TYPE_CHECKING:
     import optuna
 
+_JOURNAL = "study.journal"
 _BOUNDS = ("low", "high", "log", "step")
 
 
@@ -99,6 +103,10 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
     where = f"{source}: parameters.{key!r}"
     if not isinstance(item, Mapping):
         raise SettingsError(f"{where} must be a table such as {{low = 0.1, high = 1.0}}")
+    table, _, keyword = key.partition(".")
+    keywords = (*(field.name for field in fields(Config)), *BATCH_KEYWORDS)
+    if table == "env" and keyword not in keywords:
+        raise SettingsError(f"{where}: no such keyword; {keyword_hint(keyword, keywords)}")
     if set(item) == {"choices"}:
         choices = item["choices"]
         if not isinstance(choices, Sequence) or isinstance(choices, str) or not choices:
@@ -125,18 +133,29 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
 def open_study(folder: Path, space: SearchSpace, seed: int) -> "optuna.Study":
     """Return the study in a folder; make a new one if there is none.
 
-    A study is a file that needs no server, and several processes may work on it at once.
+    A study is a file that needs no server, and several processes may work on it at once. Raises
+    `SettingsError` if the file cannot be written, or is damaged.
     """
     import optuna
     from optuna.storages import JournalStorage
     from optuna.storages.journal import JournalFileBackend
 
     optuna.logging.set_verbosity(optuna.logging.WARNING)
-    folder.mkdir(parents=True, exist_ok=True)
-    storage = JournalStorage(JournalFileBackend(str(folder / "study.journal")))
-    study = optuna.create_study(
-        storage=storage, study_name="arkanoid", direction="maximize", load_if_exists=True
-    )
+    journal = folder / _JOURNAL
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        storage = JournalStorage(JournalFileBackend(str(journal)))
+        study = optuna.create_study(
+            storage=storage, study_name="arkanoid", direction="maximize", load_if_exists=True
+        )
+        study.get_trials(deepcopy=False)
+    except OSError as error:
+        raise SettingsError(f"{journal}: cannot be written: {cause(error)}") from None
+    except Exception as error:  # a damaged file can raise anything
+        raise SettingsError(
+            f"{journal}: the study cannot be read ({type(error).__name__}: {error}): replace it "
+            f"with a copy, or remove it to begin a new study"
+        ) from None
     # A resumed search must not repeat its first draws.
     study.sampler = optuna.samplers.TPESampler(seed=seed + len(study.trials))
     study.pruner = optuna.pruners.MedianPruner(space.startup, space.warmup)
@@ -158,10 +177,13 @@ def search(
     counted = (TrialState.COMPLETE, TrialState.PRUNED)
     if len(study.get_trials(deepcopy=False, states=counted)) >= trials:
         return
-    study.optimize(
-        lambda trial: _run_trial(trial, space, config, overrides, folder),
-        callbacks=[MaxTrialsCallback(trials, states=counted), _tell],
-    )
+    try:
+        study.optimize(
+            lambda trial: _run_trial(trial, space, config, overrides, folder),
+            callbacks=[MaxTrialsCallback(trials, states=counted), _tell],
+        )
+    except OSError as error:
+        raise SettingsError(f"{folder / _JOURNAL}: cannot be written: {cause(error)}") from None
 
 
 def _run_trial(
@@ -176,7 +198,12 @@ def _run_trial(
 
     from .training import INTERRUPTED, train
 
-    chosen = [(parameter.key, parameter.suggest(trial)) for parameter in space.parameters]
+    try:
+        chosen = [(parameter.key, parameter.suggest(trial)) for parameter in space.parameters]
+    except ValueError as error:
+        raise SettingsError(
+            f"{folder / _JOURNAL}: the study searched another space ({error}): name another --study"
+        ) from None
     try:
         experiment = load_experiment(config, [*overrides, *chosen])
     except SettingsError as error:
@@ -187,7 +214,7 @@ def _run_trial(
         experiment,
         name=f"trial{trial.number}",
         output=str(folder),
-        seed=experiment.seed + trial.number,
+        seed=(experiment.seed + trial.number) % 2**32,
     )
     latest = float("-inf")
 
@@ -221,6 +248,8 @@ def best_as_toml(study: "optuna.Study", space: SearchSpace) -> str:
     complete = study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,))
     table: dict[str, Any] = {}
     for parameter in space.parameters:
+        if parameter.key not in best.params:
+            raise SettingsError(f"the study searched another space, without {parameter.key!r}")
         value = best.params[parameter.key]
         value = json.loads(value) if parameter.choices else value
         *path, name = parameter.key.split(".")

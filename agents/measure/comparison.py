@@ -76,7 +76,7 @@ def compare(
 def _play_agent(
     experiment: Experiment, suite: Suite, policy: Policy
 ) -> dict[str, NDArray[np.float64]]:
-    return _play(experiment, suite, suite.episodes, experiment.config, lambda worlds: policy)
+    return _play(experiment, suite, suite.episodes, experiment.game, lambda worlds: policy)
 
 
 def _play_baseline(

@@ -7,6 +7,7 @@ from gymnasium.spaces import Discrete
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
+from ...envs.actions import COMMANDS
 from ...envs.rules import PADDLE_SPEED
 from ..experiment.worlds import native
 
@@ -23,15 +24,18 @@ def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArr
     """Return the actions that move the paddle, and fire if the action space can.
 
     Args:
-        space: `Discrete`: no-op, left, right, and perhaps each with fire; or `Box`: velocity and
-            fire.
+        space: `Discrete`, one of `actions.COMMANDS`; or `Box`: velocity and fire.
         moves: how far, [n]; 1 is the most that the paddle can move in a decision. A discrete action
             moves so far or not at all, whichever ends nearer: otherwise the paddle would tremble.
-        fire: whether to fire.
+        fire: whether to fire, if an action does so and moves as wanted.
     """
     if isinstance(space, Discrete):
-        indices = np.where(moves < -0.5, 1, np.where(moves > 0.5, 2, 0))
-        return indices + 3 if fire and int(space.n) > 3 else indices
+        (table,) = (table for table in COMMANDS.values() if len(table) == space.n)
+        wanted = np.where(moves < -0.5, -1.0, np.where(moves > 0.5, 1.0, 0.0))
+        fits = table[:, 0] == wanted[:, np.newaxis]
+        # Of those that move so, the one that fires or does not, or else the only one.
+        actions: NDArray[np.int64] = (2 * fits + (fits & (table[:, 1] == fire))).argmax(axis=1)
+        return actions
     velocities = np.clip(moves, -1.0, 1.0)
     return np.stack([velocities, np.full(len(moves), 1.0 if fire else -1.0)], 1, dtype=np.float32)
 

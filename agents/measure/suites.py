@@ -12,6 +12,7 @@ from ..experiment.settings import Experiment
 
 # Stands for all named levels of the experiment's game.
 NAMED = "named"
+_MOST_LEVELS = 100_000
 
 
 @dataclass(frozen=True)
@@ -102,8 +103,11 @@ def _starts_of(
         level = str(name)
         check_boss(experiment.config, level)
         return [EpisodeStart(level, {"level": level})]
-    count = min(len(seeds), at_most or len(seeds))
-    places = np.linspace(0, len(seeds) - 1, count).round().astype(int)
+    total = seeds.stop - seeds.start  # can be more than `len` counts
+    count = min(total, at_most or total)
+    if count > _MOST_LEVELS:
+        raise ValueError(f"at most {_MOST_LEVELS:,} levels can be played")
+    places = np.linspace(0, total - 1, count).round().astype(int)
     return _generated(experiment, [seeds[place] for place in places.tolist()])
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import replace_atomically
 
 Picture = NDArray[np.uint8]  # [height, width, 3]
 
@@ -18,6 +19,7 @@ RATES = {".gif": 20.0, ".mp4": 60.0}
 _GIF_COLOURS = 256
 _GIF_UNIT = 10  # milliseconds: a GIF counts hundredths of a second
 _QUALITY = 8  # of 10
+_UNFINISHED = "ffmpeg did not finish the film; is the disk full?"
 
 
 def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
@@ -29,7 +31,7 @@ def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
         SettingsError: the suffix is none of these, there is no picture, or an ``.mp4`` is asked for
             and imageio-ffmpeg is not installed.
         ModuleNotFoundError: Pillow is not installed.
-        OSError: the file cannot be written.
+        OSError: the file cannot be written; what was there before stays.
     """
     if path.suffix not in RATES:
         raise SettingsError(f"{path}: a film is written as {' or '.join(RATES)}")
@@ -38,7 +40,9 @@ def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
     if first is None:
         raise SettingsError(f"{path}: there is no picture to write")
     write = _write_gif if path.suffix == ".gif" else _write_mp4
-    write(path, itertools.chain([first], rest), rate)
+    replace_atomically(
+        path, lambda unfinished: write(unfinished, itertools.chain([first], rest), rate)
+    )
 
 
 def _write_gif(path: Path, pictures: Iterator[Picture], rate: float) -> None:
@@ -62,25 +66,39 @@ def _write_gif(path: Path, pictures: Iterator[Picture], rate: float) -> None:
 
 def _write_mp4(path: Path, pictures: Iterator[Picture], rate: float) -> None:
     try:
-        from imageio_ffmpeg import write_frames
+        from imageio_ffmpeg import count_frames_and_secs, write_frames
     except ModuleNotFoundError:
         raise SettingsError(
-            f"{path}: to write .mp4, run `pip install imageio-ffmpeg`; .gif needs only "
-            "the extra `train`"
+            "to write .mp4, run `pip install imageio-ffmpeg`; .gif needs only the extra `train`"
         ) from None
     first = next(pictures)
     height, width, _ = first.shape
+    # ffmpeg would take the beginning of a relative path such as `a:b.mp4` for a protocol.
+    file = str(path.absolute())
     writer = write_frames(
-        path,
+        file,
         (width, height),
         fps=rate,  # pyright: ignore[reportArgumentType] (guessed from the default, a whole number)
         quality=_QUALITY,
         macro_block_size=2,
+        ffmpeg_log_level="quiet",
     )
+    sent = 0
     with contextlib.closing(writer):
         writer.send(None)
         for picture in itertools.chain([first], pictures):
-            writer.send(np.ascontiguousarray(picture))
+            try:
+                writer.send(np.ascontiguousarray(picture))
+            except OSError:
+                raise OSError(_UNFINISHED) from None
+            sent += 1
+    # ffmpeg's exit status is hidden, and on a full disk it leaves an incomplete film.
+    try:
+        written, _ = count_frames_and_secs(file)
+    except (OSError, RuntimeError):
+        written = 0
+    if written != sent:
+        raise OSError(_UNFINISHED)
 
 
 def _gif_palette(picture: Picture) -> NDArray[np.uint8]:

@@ -1,5 +1,6 @@
 """A policy at play, picture by picture, without a display: for films and for the window."""
 
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
@@ -50,7 +51,7 @@ def film_policy(
     """
     smooth = path.suffix == ".mp4" and can_be_smooth(experiment)
     rate = frame_rate(experiment, smooth)
-    count = int((seconds or experiment.evaluation.film_seconds) * rate)
+    count = int(min((seconds or experiment.evaluation.film_seconds) * rate, sys.maxsize // 2))
     frames = islice(play_frames(experiment, policy, start, smooth), max(1, count))
     write_film(path, (frame.picture for frame in frames), rate)
 
@@ -80,7 +81,7 @@ def play_frames(
     With ``smooth`` a step is a tick. The policy still decides as often as it was trained to, and
     the game is the same.
     """
-    config = experiment.config
+    config = experiment.game
     skip = config.frame_skip if smooth else 1
     if smooth:
         config = replace(config, frame_skip=1, max_decisions=config.max_decisions * skip)

@@ -15,6 +15,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
 from markupsafe import Markup
 
+from ..experiment.files import write_atomically
+
 _KINDS = {".png": "image/png", ".gif": "image/gif"}
 # What has a meaning inside a line of Markdown; underscores inside a word have none.
 _SPECIAL = re.compile(r"[\\`*\[\]<>|&~$#]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])")
@@ -39,14 +41,14 @@ def write_page(path: Path, facts: Mapping[str, Any], pictures: Pictures) -> None
         OSError: a file cannot be written.
     """
     if path.suffix == ".html":
-        path.write_text(as_html(facts, pictures), encoding="utf-8")
+        write_atomically(path, as_html(facts, pictures).encode())
         return
     folder = path.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in pictures.items():
-        (folder / name).write_bytes(content)
+        write_atomically(folder / name, content)
     sources = {name: f"{quote(folder.name)}/{quote(name)}" for name in pictures}
-    path.write_text(as_markdown(facts, sources), encoding="utf-8")
+    write_atomically(path, as_markdown(facts, sources).encode())
 
 
 def as_html(facts: Mapping[str, Any], pictures: Pictures) -> str:

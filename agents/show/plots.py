@@ -1,5 +1,6 @@
 """Plots of results: all policies, level by level, and the learning curves."""
 
+import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ..experiment.files import write_atomically
 from ..experiment.settings import Experiment
 from ..learn.curves import STEP
 from ..measure.comparison import COLUMNS, Comparison, Results, level_interval, summarise
@@ -39,8 +41,15 @@ def plot_comparison(experiment: Experiment, comparison: Comparison, folder: Path
             figures[f"{name}-levels"] = plot_levels(name, suites[name].starts, results)
         for stem, figure in figures.items():
             paths.append(folder / f"{stem}.png")
-            figure.savefig(paths[-1], dpi=120)
+            write_atomically(paths[-1], as_png(figure, dpi=120))
     return paths
+
+
+def as_png(figure: Figure, dpi: int) -> bytes:
+    """Return a figure as the content of a PNG file."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=dpi)
+    return buffer.getvalue()
 
 
 def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:

@@ -1,6 +1,5 @@
 """What a report says about an agent: a model card, learning curves, results and a film."""
 
-import io
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -26,7 +25,7 @@ from ..measure.comparison import (
 from ..measure.policy import Policy
 from ..measure.suites import Suite, make_suites
 from .frames import film_policy
-from .plots import plot_curves, plot_levels, plot_policies
+from .plots import as_png, plot_curves, plot_levels, plot_policies
 
 
 def describe_agent(
@@ -34,7 +33,7 @@ def describe_agent(
 ) -> tuple[dict[str, Any], dict[str, bytes]]:
     """Measure the models of one agent; return facts and pictures for `page.write_page`."""
     experiment = models[0].run.experiment(overrides)
-    policies = [load_policy(model.path, experiment) for model in models]
+    policies = [load_policy(model, experiment) for model in models]
     curves = [curve for curve in (read_curve(model.run.curve) for model in models) if curve]
     pictures = {"play.gif": _film(experiment, policies[0])}
     if curves:
@@ -97,9 +96,7 @@ def _suite_facts(name: str, suite: Suite, results: Mapping[str, Results]) -> dic
 
 
 def _png(figure: Figure) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=100)
-    return buffer.getvalue()
+    return as_png(figure, dpi=100)
 
 
 def _film(experiment: Experiment, policy: Policy) -> bytes:

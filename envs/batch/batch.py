@@ -10,14 +10,14 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..actions import COMMANDS, decode_actions, decode_velocities
+from ..actions import BOX, COMMANDS, decode_actions, decode_velocities
 from ..config import Config
 from ..game.random import seed_state
 from ..game.rulebook import make_rules
 from ..levels.plan import LevelPlan, plan_levels
-from ..levels.starts import choose_starts, forget_starts
+from ..levels.starts import START_OPTIONS, choose_starts, forget_starts
 from ..observe.choice import make_observer
-from ..state import Outcome, Outcomes, World, Worlds, copy_records, zeros_in_lines
+from ..state import GAME_OVER, Outcome, Outcomes, World, Worlds, copy_records, zeros_in_lines
 from .blocks import Block, divide, thread_count
 from .setup import describe_setup
 from .stepping import reset_worlds, step_worlds
@@ -139,9 +139,8 @@ class Batch:
     @property
     def state(self) -> Worlds:
         """The state of the worlds, read-only `World` records [n] that each step changes."""
-        state = self.worlds.view()
-        state.flags.writeable = False
-        return state
+        # Through memory that is read-only itself: a flag could be set back.
+        return np.frombuffer(memoryview(self.worlds.view(np.uint8)).toreadonly(), World)
 
     @property
     def seeded(self) -> NDArray[np.bool_]:
@@ -166,8 +165,10 @@ class Batch:
     def command(self, actions: Any) -> None:
         """Take actions as the worlds' commands: integers [n], or velocities and fire, [n, 2].
 
+        Velocities beyond -1 and 1 count as -1 and 1.
+
         Raises:
-            ValueError: their number or one of them is illegal.
+            ValueError: their number or an integer is illegal, or a velocity is NaN.
         """
         array = np.asarray(actions)
         if self._table is None:
@@ -175,8 +176,8 @@ class Batch:
             return
         if array.shape != (self.num_worlds,) or array.dtype.kind not in "iu":
             raise ValueError(
-                f"actions must be {self.num_worlds} integers, one for each world; got "
-                f"{array.dtype} of shape {array.shape}"
+                f"actions must be {self.num_worlds} integers, one for each world, in "
+                f"Discrete({len(self._table)}); got {array.dtype} of shape {array.shape}"
             )
         wrong = decode_actions(array.astype(np.int64), self._table, self.commands)
         if wrong >= 0:
@@ -188,18 +189,35 @@ class Batch:
         if array.shape != (self.num_worlds, 2) or array.dtype.kind not in "iuf":
             raise ValueError(
                 f"actions must be numbers of shape ({self.num_worlds}, 2), velocity and fire of "
-                f"each world; got {array.dtype} of shape {array.shape}"
+                f"each world, in {BOX}; got {array.dtype} of shape {array.shape}"
             )
         wrong = decode_velocities(array.astype(np.float64), self.commands)
         if wrong >= 0:
             raise ValueError(
-                f"action {array[wrong].tolist()} of world {wrong} is not within -1 and 1"
+                f"action {array[wrong].tolist()} of world {wrong} is not in {BOX}: it has a NaN"
             )
 
-    def reset(self, mask: NDArray[np.bool_], options: dict[str, Any] | None = None) -> None:
-        """Begin a new episode in the worlds of a mask, bool [n]; options: see `curriculum`."""
+    def reset(
+        self,
+        mask: NDArray[np.bool_],
+        options: dict[str, Any] | None = None,
+        anew: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Begin a new episode in some worlds.
+
+        It is a new game, unless a life was just lost (`episodic_life`) and there are no options.
+
+        Args:
+            mask: of these worlds, bool [n].
+            options: how the episodes begin, see `starts`.
+            anew: of worlds that begin a new game also after a lost life, bool [n].
+        """
         if options:
             choose_starts(self.worlds, mask, options, self.config, self.plan)
+            if any(option in options for option in START_OPTIONS):
+                anew = mask
+        if anew is not None:
+            self.worlds["done"][anew] = GAME_OVER
         for block in self._all_blocks():
             block.reset(mask[block.where])
             block.observe(mask[block.where])
@@ -285,7 +303,9 @@ class Batch:
             where=index,
             worlds=worlds,
             outcomes=outcomes,
-            play=partial(step_worlds, *game, self.commands[index], next_step),
+            play=partial(
+                step_worlds, *game, self.commands[index], next_step, self.config.episodic_life
+            ),
             reset=partial(reset_worlds, *game),
             observe=self.observer.part(self.worlds, self.rules, index),
             everywhere=np.ones(len(worlds), np.bool_),

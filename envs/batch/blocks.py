@@ -14,7 +14,7 @@ from ..state import Outcomes, Worlds
 
 # By the kind of observation. To start a thread's work takes some 60 µs per step, and a thread with
 # fewer worlds gains less than that.
-WORLDS_PER_THREAD = {"vector": 1024, "grid": 512, "rgb": 128}
+WORLDS_PER_THREAD = {"vector": 1024, "grid": 512, "rgb": 128, "dict": 128}
 # What a step touches of this number of worlds and their vectors fits into a cache of 1 MB.
 WORLDS_PER_BLOCK = 512
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..state import World
+from ..state import GAME_OVER, World
 from .batch import Batch
 from .replays import GameStart, Replay, Result
 
@@ -124,8 +124,8 @@ class Recorder:
             self._batch.listeners.remove(self)
 
     def reset(self, mask: NDArray[np.bool_]) -> None:
-        """Follow a reset of the worlds of a mask."""
-        if mask[self._world]:
+        """Follow a reset of the worlds of a mask: to a new game, or to a game's next life."""
+        if mask[self._world] and self._batch.worlds["decisions"][self._world] == 0:
             self._begin()
 
     def _begin(self) -> None:
@@ -145,11 +145,17 @@ class Recorder:
 
     def step(self) -> None:
         """Follow a step."""
-        outcome = self._batch.outcomes[self._world]
-        over = bool(outcome["terminated"] or outcome["truncated"])
-        begun = bool(self._batch.worlds["decisions"][self._world] == 0)
-        # In next-step mode, a step that begins a game plays no decision.
-        if self._recording and not self._over and (over or not begun):
+        batch, index = self._batch, self._world
+        outcome = batch.outcomes[index]
+        decisions = batch.worlds["decisions"][index]
+        begun = bool(decisions == 0)
+        # With `episodic_life` a game goes on after an episode's end.
+        over = bool(outcome["terminated"] or outcome["truncated"]) and (
+            begun or bool(batch.worlds["done"][index] == GAME_OVER)
+        )
+        # In next-step mode, a step that begins an episode plays no decision.
+        played = over or decisions > len(self._commands) // self._command.nbytes
+        if self._recording and not self._over and played:
             self._note(over, begun)
         if begun:
             self._begin()
@@ -194,7 +200,7 @@ class Recorder:
                 score=int(outcome["score"]),
                 lives=int(outcome["lives"]),
                 round=int(outcome["round_number"]),
-                terminated=self._over and bool(outcome["terminated"]),
+                terminated=self._over and bool(outcome["lives"] == 0),
                 truncation=int(outcome["truncation"]),
             ),
         )

@@ -7,6 +7,7 @@ from ...physics.kernels.prefetch import prefetch
 from ..game.episode import begin_episode
 from ..game.tick import clear_events, play_decision
 from ..state import (
+    LIFE_LOST,
     Levels,
     Outcome,
     OutcomeRecord,
@@ -39,8 +40,12 @@ def reset_worlds(
 def _reset_world(
     world: WorldRecord, rules: RulesRecord, levels: Levels, outcome: OutcomeRecord
 ) -> None:
-    """Begin a new episode in one world."""
-    begin_episode(world, rules, levels)
+    """Begin a new episode in one world: a new game, or the next life of the present one."""
+    if world.done == LIFE_LOST:
+        world.done = 0
+    else:
+        begin_episode(world, rules, levels)
+    world.first_decision = world.decisions
     clear_events(world)
     outcome.reward = 0.0
     outcome.hits = 0
@@ -92,6 +97,7 @@ def step_worlds(
     outcomes: Outcomes,
     commands: Any,
     next_step: bool,
+    episodic_life: bool,
 ) -> int:
     """Play one decision in each world; return how many episodes are over.
 
@@ -99,6 +105,7 @@ def step_worlds(
         outcomes: written in place.
         commands: float64 [n, 2], the velocity in [-1, 1] and fire (0 or 1).
         next_step: whether a world whose episode was over before begins a new one instead.
+        episodic_life: whether a lost life ends an episode. It changes nothing in the game.
     """
     over = 0
     for index in range(worlds.shape[0]):
@@ -111,5 +118,9 @@ def step_worlds(
             continue
         play_decision(world, rules[0], levels, commands[index, 0], commands[index, 1], outcome)
         _report(world, outcome)
-        over += world.done
+        if episodic_life and world.lives_lost > 0:
+            outcome.terminated = True
+            if world.done == 0:
+                world.done = LIFE_LOST
+        over += world.done != 0
     return over

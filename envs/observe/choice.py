@@ -15,6 +15,10 @@ def make_observer(config: Config, num_worlds: int) -> Observer:
         from .pixels import PixelObserver
 
         return PixelObserver(config, num_worlds)
+    if config.observation == "dict":
+        from .both import DictObserver
+
+        return DictObserver(config, num_worlds)
     from .vector import VectorObserver
 
     return VectorObserver(config, num_worlds)

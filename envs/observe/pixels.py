@@ -1,8 +1,9 @@
 """The `rgb` observation: pictures, uint8 [stack * channels, height, width].
 
-Channels come first, as a network of convolutions takes them: red, green and blue, or the brightness
-alone. Each is, bit for bit, a channel of the picture that `render` gives for the same size. In a
-stack the latest picture is the last; the first picture of an episode fills all places.
+Channels come first, as a network of convolutions takes them, or last, with ``channels="last"``:
+red, green and blue, or the brightness alone. Each is, bit for bit, a channel of the picture that
+`render` gives for the same size. In a stack the latest picture is the last; the first picture of an
+episode fills all places.
 
 A stack is a window that slides over a longer row of pictures, by one place per step. Pictures are
 moved only when it has reached the row's end.
@@ -67,7 +68,7 @@ def draw_pictures(
             worlds[index],
             rules[0],
         )
-        if worlds[index].decisions == 0:
+        if worlds[index].decisions == worlds[index].first_decision:
             for place in range(first, newest):
                 _copy_picture(row, shown, channel, newest, place)
 
@@ -81,25 +82,26 @@ def _copy_picture(row: Any, shown: Any, channel: int, source: int, target: int) 
 
 
 class PixelObserver:
-    """`Observer` of pictures, uint8 [n, stack * channels, height, width]."""
+    """`Observer` of pictures, uint8 [n, stack * channels, height, width], or the channels last."""
 
     def __init__(self, config: Config, num_worlds: int) -> None:
         """Make the arrays, and draw what is the same in all pictures."""
         height, width = config.picture_size
         self._sheets = channel_sheets(height, width, config.grey)
         self._stack = config.stack
+        self._channels_last = config.channels == "last"
         places = STACKS_PER_ROW * config.stack if config.stack > 1 else 1
         channels = len(self._sheets)
         self._row = np.zeros((num_worlds, places, channels, height, width), np.uint8)
         self._drawn = np.zeros((num_worlds, places, channels), Drawn)
         self._place(self._stack - 1)
-        shape = (self._stack * channels, height, width)
+        count = self._stack * channels
         # Whether Box is generic depends on Gymnasium's version.
-        self.space: Any = spaces.Box(0, 255, shape, np.uint8)
+        self.space: Any = spaces.Box(0, 255, self.observations.shape[1:], np.uint8)
         names = ("grey",) if config.grey else ("red", "green", "blue")
         self.layout = {name: slice(index, None, channels) for index, name in enumerate(names)}
         self.layout["oldest"] = slice(0, channels)
-        self.layout["newest"] = slice(shape[0] - channels, shape[0])
+        self.layout["newest"] = slice(count - channels, count)
 
     def advance(self) -> None:
         """Move the stack by one place, or from the row's end to its beginning."""
@@ -141,7 +143,10 @@ class PixelObserver:
         channels = len(self._sheets)
         window = slice((newest + 1 - self._stack) * channels, (newest + 1) * channels)
         pictures = self._row.reshape(len(self._row), -1, *self._row.shape[3:])
-        self.observations: NDArray[np.uint8] = pictures[:, window]
+        shown = pictures[:, window]
+        self.observations: NDArray[np.uint8] = (
+            np.moveaxis(shown, 1, -1) if self._channels_last else shown
+        )
 
 
 @lru_cache(maxsize=8)

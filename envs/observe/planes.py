@@ -134,6 +134,8 @@ _SHARD_MOTION = _EXTRAS["shard_motion"].start * PLANE
 # four cells each; and 30 cells of the boss.
 _MOVING = _PADDLE
 MAX_MARKS = 256
+# Instead of a number of marks: any cell may be filled, and all are erased.
+_ANY_CELL = -1
 
 
 class GridObserver:
@@ -157,7 +159,7 @@ class GridObserver:
     def recall(self, observations: NDArray[Any]) -> None:
         """Go on from these grids."""
         self.observations[:] = observations
-        find_marks(self._rows, self._marks)
+        self._marks[:, 0] = _ANY_CELL
         forget_shown(self._shown)
 
     def clone(self) -> "GridObserver":
@@ -183,7 +185,8 @@ def observe_grids(
 
     Args:
         rows: float32 [n, planes * PLANE].
-        marks: int32 [n, 1 + MAX_MARKS], the number of places to be erased, and these.
+        marks: int32 [n, 1 + MAX_MARKS], the number of places to be erased, and these; or
+            `_ANY_CELL`.
         shown: int64 [n, 3], what the rows show.
         mask: bool [n].
     """
@@ -192,21 +195,14 @@ def observe_grids(
             _observe_grid(worlds[index], rules[0], rows[index], marks[index], shown[index])
 
 
-@kernel
-def find_marks(rows: Any, marks: Any) -> None:
-    """Find the places to be erased in grids that were observed elsewhere."""
-    for index in range(rows.shape[0]):
-        marks[index, 0] = 0
-        for place in range(_MOVING, rows.shape[1]):
-            if rows[index, place] != 0.0:
-                _put(rows[index], marks[index], place, 0.0)
-
-
 @inlined
 def _observe_grid(
     world: WorldRecord, rules: RulesRecord, row: Any, marks: Any, shown: ShownRow
 ) -> None:
     """Write a world's observation into its row; the bricks only if they have changed."""
+    if marks[0] == _ANY_CELL:
+        for place in range(_MOVING, row.shape[0]):
+            row[place] = 0.0
     for index in range(marks[0]):
         row[marks[1 + index]] = 0.0
     marks[0] = 0

@@ -110,9 +110,10 @@ def keys_to_action(config: Config) -> dict[tuple[int, ...], Any]:
 
 
 def _action(config: Config, move: int, fire: bool) -> Any:
-    """Return the action that moves and fires; some action spaces cannot fire."""
+    """Return the action that moves and fires, or one that moves if none does both."""
     table = COMMANDS.get(config.actions)
     if table is None:
         return np.array([move, fire], np.float32)
-    can_fire = bool(table[:, 1].any())
-    return int(np.flatnonzero((table == [move, fire and can_fire]).all(axis=1))[0])
+    moves = table[:, 0] == move
+    # Of those that move so, the one that fires or does not, or else the only one.
+    return int((2 * moves + (moves & (table[:, 1] == fire))).argmax())

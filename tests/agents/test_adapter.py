@@ -335,3 +335,31 @@ def test_masks_say_which_keys_a_worlds_info_has() -> None:
     }
     assert world_info(infos, 0) == {"score": 1}
     assert world_info(infos, 1) == {"deep": {"x": 4}}
+
+
+def test_a_single_environment_is_refused_with_advice_that_works() -> None:
+    """The advice was a keyword that `gym.make` refuses."""
+    with pytest.raises(TypeError, match=r"gym.make_vec\(id, num_envs, autoreset_mode='SameStep'\)"):
+        GymnasiumVecEnv(gym.make("arkanoid:Arkanoid-v0"))  # type: ignore[arg-type]
+    GymnasiumVecEnv(gym.make_vec("arkanoid:Arkanoid-v0", 2, autoreset_mode="SameStep"))
+    other = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": SAME_STEP}}
+    GymnasiumVecEnv(gym.make_vec("arkanoid:Arkanoid-v0", 2, **other))  # type: ignore[arg-type]
+
+
+def test_films_are_as_fast_as_the_game() -> None:
+    """`VecVideoRecorder` found no speed and took 30 frames a second, twice as many as there are."""
+    worlds = gym.make_vec(
+        "arkanoid:Arkanoid-v0", 2, autoreset_mode="SameStep", render_mode="rgb_array"
+    )
+    venv = GymnasiumVecEnv(worlds)
+    assert venv.metadata["render_fps"] == 15
+    assert venv.render_mode == "rgb_array"
+
+
+def test_masks_of_actions_and_lives_come_through() -> None:
+    worlds = gym.make_vec("arkanoid:Arkanoid-v0", 3, autoreset_mode="SameStep")
+    venv = GymnasiumVecEnv(worlds)
+    venv.reset()
+    masks = np.stack(venv.env_method("action_masks"))
+    assert masks.shape == (3, 6)
+    assert venv.has_attr("action_masks")

@@ -16,7 +16,7 @@ from arkanoid.agents.measure.policy import encode_actions
 from arkanoid.agents.measure.suites import find_starts
 
 LAYOUT = {"paddle": slice(0, 2), "ball_x": slice(4, 6), "ball_y": slice(6, 8)}
-THREE, SIX = gym.spaces.Discrete(3), gym.spaces.Discrete(6)
+THREE, FOUR, SIX = gym.spaces.Discrete(3), gym.spaces.Discrete(4), gym.spaces.Discrete(6)
 BOX: Any = gym.spaces.Box(-1, 1, (2,), np.float32)
 NO_OP, LEFT, RIGHT = 0, 1, 2
 
@@ -61,7 +61,11 @@ def test_discrete_moves_go_all_the_way_or_not_at_all() -> None:
     moves = np.array([-3, -0.51, -0.49, 0, 0.49, 0.51, 3])
     assert encode_actions(THREE, moves).tolist() == [1, 1, 0, 0, 0, 2, 2]
     assert encode_actions(THREE, moves, fire=True).tolist() == [1, 1, 0, 0, 0, 2, 2]
+    assert encode_actions(SIX, moves).tolist() == [1, 1, 0, 0, 0, 2, 2]
     assert encode_actions(SIX, moves, fire=True).tolist() == [4, 4, 3, 3, 3, 5, 5]
+    # No-op, fire, right, left: no action moves and fires.
+    assert encode_actions(FOUR, moves).tolist() == [3, 3, 0, 0, 0, 2, 2]
+    assert encode_actions(FOUR, moves, fire=True).tolist() == [3, 3, 1, 1, 1, 2, 2]
     velocities = encode_actions(BOX, moves, fire=True)
     np.testing.assert_allclose(velocities[:, 0], [-1, -0.51, -0.49, 0, 0.49, 0.51, 1])
     assert (velocities[:, 1] == 1).all()
@@ -72,7 +76,7 @@ def test_a_layout_without_the_ball_is_refused() -> None:
         BallFollower(THREE, {"paddle": slice(0, 1)}, 0.14)
 
 
-@pytest.mark.parametrize("actions", ["discrete3", "discrete6", "box"])
+@pytest.mark.parametrize("actions", ["discrete3", "discrete4", "discrete6", "box"])
 @pytest.mark.parametrize("name", BASELINES)
 def test_every_baseline_plays_with_every_kind_of_action(name: str, actions: str) -> None:
     overrides = [("env_id", "Arkanoid-v0"), ("env.actions", actions), ("env.max_decisions", "40")]

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.experiment.files import write_atomically
 from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.learn.curves import STEP, CurveWriter, read_curve
@@ -183,12 +182,3 @@ def test_curves_continue_at_the_checkpoints_step(tmp_path: Path) -> None:
     ]
     CurveWriter(path).close()
     assert read_curve(path) == []
-
-
-def test_files_are_written_atomically(tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    write_atomically(path, b"first")
-    (tmp_path / "unfinished-file").write_bytes(b"left by a killed process")
-    write_atomically(path, b"second")
-    assert path.read_bytes() == b"second"
-    assert list(tmp_path.iterdir()) == [path]

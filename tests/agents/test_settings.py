@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
@@ -22,7 +23,8 @@ from arkanoid.agents.experiment.worlds import make_worlds, native
 from arkanoid.agents.measure.suites import make_suites
 from arkanoid.envs import ArkanoidVectorEnv
 from arkanoid.envs.config import Config
-from arkanoid.envs.registration import BATCH_KEYWORDS, resolve_config
+from arkanoid.envs.hints import BATCH_KEYWORDS
+from arkanoid.envs.registration import resolve_config
 from helpers.processes import run_program
 from hypothesis import given
 from hypothesis import strategies as st
@@ -134,6 +136,8 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
         ('[network]\nfeatures = "planes"', ["'network.features'", "'grid'", "'vector'"]),
         ('env = {observation = "rgb"}\nnetwork = {features = "lattice"}', ["'rgb'", "'vector'"]),
         ("[network]\nchannels = []", ["'network.channels'", "at least one"]),
+        ('env = {observation = "dict"}', ["'env.observation' = 'dict'", "other trainers"]),
+        ('env = {observation = "rgb", channels = "last"}', ["'env.channels'", "channels first"]),
         ("[env]\nlivs = 3", ["Arkanoid-v0 refuses the [env] table", "'livs'", "'lives'"]),
         ("[env]\nlives = 0", ["Arkanoid-v0 refuses the [env] table", "lives", "got 0"]),
         ('env_id = "Arkanod-v0"', ["'env_id'", "'Arkanod-v0'"]),
@@ -210,7 +214,7 @@ def test_every_setting_says_what_it_means() -> None:
 
 
 numbers = st.floats(1e-12, 1, allow_subnormal=False)
-counts = st.integers(1, 10**9)
+counts = st.integers(1, 16_384)
 # TOML has no surrogates.
 texts = st.text(st.characters(exclude_categories=["Cs"]), min_size=1)
 
@@ -329,3 +333,26 @@ def test_every_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> No
             cli.main([name, "--help"])
         assert stop.value.code == 0
         assert summary in capsys.readouterr().out
+
+
+def test_agents_are_measured_in_whole_games(tmp_path: Path) -> None:
+    """An episode that ends with a life is for training: a game's score is that of all its lives."""
+    experiment = load_experiment(write(tmp_path, "[env]\nepisodic_life = true\nlives = 2"))
+    assert experiment.config.episodic_life
+    assert experiment.game == replace(experiment.config, episodic_life=False)
+
+
+def test_a_quoted_dotted_key_is_explained(tmp_path: Path) -> None:
+    """It said that 'training.worlds' was unknown, and that 'training.worlds' was meant."""
+    path = tmp_path / "quoted.toml"
+    path.write_text('"training.worlds" = 3\n')
+    with pytest.raises(SettingsError, match="in quotation marks is one word"):
+        load_experiment(str(path))
+
+
+def test_an_experiment_made_in_python_is_written_as_toml(tmp_path: Path) -> None:
+    """A range of seeds, a legal value of `levels`, ended in a TypeError."""
+    env = {"levels": range(3, 9), "difficulty": None, "lives": np.int64(2)}
+    path = tmp_path / "made.toml"
+    path.write_text(to_toml(Experiment(env=env)), encoding="utf-8")
+    assert load_experiment(str(path)).env == {"levels": "seeds:3-8", "lives": 2}

@@ -104,6 +104,8 @@ def test_the_packaged_space_is_valid_and_is_not_listed_as_a_config() -> None:
         ('[parameters]\n"ppo.gamma" = {choices = []}', ["'ppo.gamma'", "'choices'"]),
         ('[parameters]\n"ppo.gamma" = {choices = [0.5, "x"]}', ["'ppo.gamma'", "'x'"]),
         ('[parameters]\n"network.activation" = {choices = ["rellu"]}', ["'relu'", "'rellu'"]),
+        # All trials were run, each without a result.
+        ('[parameters]\n"env.frame_ship" = {choices = [2]}', ["'env.frame_ship'", "'frame_skip'"]),
     ],
 )
 def test_an_error_in_a_space_names_the_file_and_what_is_right(

@@ -9,7 +9,7 @@ import pytest
 import torch
 from arkanoid.agents.experiment.provenance import weights_hash
 from arkanoid.agents.experiment.reading import packaged_configs
-from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Curriculum, Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds, native
 from arkanoid.agents.learn.curves import STEP, read_curve
@@ -168,7 +168,7 @@ def test_the_network_suits_the_observation(
     _, run = trained(experiment)
     worlds = make_worlds(experiment, 4)
     observations, _ = worlds.reset(seed=0)
-    actions = load_policy(run.model, experiment)(observations, np.arange(4))
+    actions = load_policy(ModelFile.find(str(run.model)), experiment)(observations, np.arange(4))
     assert worlds.action_space.contains(actions)
     assert run.model.stat().st_size < 20_000_000
 

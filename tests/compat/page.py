@@ -51,7 +51,7 @@ def table() -> Iterator[str]:
 def versions(peer: Peer, result: dict[str, Any] | None) -> tuple[str, str]:
     """Return the versions of the peer and of Gymnasium that were tried."""
     found = result["versions"] if result else {}
-    first = package(peer.requirements[0])
+    first = next(iter([*peer.commits(), *map(package, (*peer.alone, *peer.requirements))]))
     return found.get(first, "-"), found.get("gymnasium", "-")
 
 

@@ -21,12 +21,19 @@ class Peer:
     python: tuple[str, str]
     tried: str
     commands: tuple[str, ...]
+    alone: tuple[str, ...] = ()
+    clones: tuple[str, ...] = ()
 
     def constraints(self) -> list[str]:
         """Return the pins of constraints.txt for what the environment runs on."""
         wanted = {*RUNS_ON} - {package(pin) for pin in self.requirements}
         lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
         return [line for line in lines if package(line) in wanted]
+
+    def commits(self) -> dict[str, str]:
+        """Return the commit of each repository that is cloned, by its name."""
+        addresses = (clone.split("@") for clone in self.clones)
+        return {Path(address).name.lower(): commit for address, commit in addresses}
 
     def supports(self, python: tuple[int, int]) -> bool:
         """Tell whether the requirements have wheels for a version of Python."""

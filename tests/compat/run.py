@@ -25,7 +25,11 @@ from .peers import ROOT, Peer, package, read_peers
 
 PATIENCE = 1800  # seconds that a command may take
 KEPT = 6  # lines of a command's output that are kept
-PLACES = {"{examples}": ROOT / "docs" / "examples", "{tests}": ROOT / "tests"}
+PLACES = {
+    "{examples}": ROOT / "docs" / "examples",
+    "{tests}": ROOT / "tests",
+    "{clones}": ROOT / "build" / "clones",
+}
 # Packages whose versions are kept for every peer, beside the peer's requirements.
 ALWAYS = ("arkanoid", "gymnasium", "numba", "numpy", "torch")
 
@@ -52,7 +56,8 @@ def try_peer(peer: Peer) -> dict[str, Any]:
         "seconds": round(time.perf_counter() - start),
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
-        "versions": installed([*map(package, peer.requirements), *ALWAYS]),
+        "versions": {name: commit[:8] for name, commit in peer.commits().items()}
+        | installed([*map(package, (*peer.alone, *peer.requirements)), *ALWAYS]),
         "printed": printed,
     }
 

@@ -18,11 +18,13 @@ GAMES = [
     LIVELY | {"observation": "grid", "capsule_rate": 1.0},
     LIVELY | {"observation": "rgb", "size": 42, "grey": True, "stack": 4, "capsule_rate": 1.0},
     LIVELY | {"observation": "rgb", "size": (30, 40)},
+    LIVELY | {"observation": "dict", "size": 42, "stack": 3, "lives": 4, "episodic_life": True},
+    LIVELY | {"observation": "rgb", "size": 30, "channels": "last", "actions": "discrete4"},
 ]
 
 
 @pytest.mark.parametrize("name", ["Arkanoid-v0", "ArkanoidLite-v0"])
-@pytest.mark.parametrize("actions", ["discrete6", "discrete3", "box"])
+@pytest.mark.parametrize("actions", ["discrete6", "discrete4", "discrete3", "box"])
 def test_gymnasium_env_checker(name, actions):
     env = gym.make(name, actions=actions, render_mode="rgb_array")
     check_env(env.unwrapped)
@@ -194,7 +196,7 @@ def test_no_seed_goes_on_and_unseeded_envs_differ():
         ({"speed": float("nan")}, ValueError, "speed must be between"),
         ({"speed": "fast"}, TypeError, "speed must be a number"),
         ({"sticky_action": 1.5}, ValueError, "sticky_action must be between 0 and 1"),
-        ({"actions": "buttons"}, ValueError, "'discrete6', 'discrete3', 'box'"),
+        ({"actions": "buttons"}, ValueError, "'discrete6', 'discrete4', 'discrete3', 'box'"),
         ({"capsules": 1}, TypeError, "capsules must be True or False"),
         ({"enemies": "no"}, TypeError, "enemies must be True or False"),
         ({"capsule_rate": 1.2}, ValueError, "capsule_rate must be between 0 and 1"),
@@ -274,15 +276,15 @@ def test_illegal_actions_are_refused(action):
         envs.step(np.zeros(2))
 
 
-@pytest.mark.parametrize("action", [[0.0, 1.5], [-1.1, 0.0], [float("nan"), 0.0]])
-def test_illegal_velocities_are_refused(action):
+@pytest.mark.parametrize("action", [[0.0, float("nan")], [float("nan"), 0.0]])
+def test_velocities_that_are_no_numbers_are_refused(action):
     env = ArkanoidEnv(actions="box")
     env.reset(seed=0)
-    with pytest.raises(ValueError, match="not within -1 and 1"):
+    with pytest.raises(ValueError, match=r"is not in Box\(-1.0, 1.0, \(2,\), float32\): .* NaN"):
         env.step(np.array(action))
     envs = ArkanoidVectorEnv(2, actions="box")
     envs.reset(seed=0)
-    with pytest.raises(ValueError, match="of world 1 is not within -1 and 1"):
+    with pytest.raises(ValueError, match=r"of world 1 is not in Box\(.* NaN"):
         envs.step(np.array([[0.0, 0.0], action]))
     with pytest.raises(ValueError, match="velocity and fire of each world"):
         envs.step(np.zeros(2))

@@ -63,6 +63,9 @@ def test_the_state_of_an_environment_can_be_read_but_not_written(worlds):
         state["paddle_x"] = 0.0
     with pytest.raises(ValueError, match="read-only"):
         (state if worlds == 1 else state[0]).lives = 9
+    # It could be unlocked: the view was read-only, but not the memory that it showed.
+    with pytest.raises(ValueError, match="cannot set WRITEABLE flag"):
+        (state if worlds > 1 else state["brick_hits"]).flags.writeable = True
     kept = state.copy()
     kept["lives"] = 9
     assert (state["lives"] == 3).all()

@@ -1,5 +1,7 @@
 """The observation `grid`: its planes show the state, and nothing else."""
 
+import pickle
+
 import numpy as np
 import pytest
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
@@ -213,3 +215,18 @@ def test_the_fullest_grid_can_be_erased():
 
 def test_grid_rows_fill_the_field():
     assert GRID_ROWS == 28
+
+
+def test_a_grid_that_was_written_into_is_repaired_by_a_pickle_and_a_snapshot():
+    """It ended in a crash: each filled cell was noted as one to be erased, past the list's end."""
+    env = ArkanoidVectorEnv(3, copy=False, observation="grid")
+    twin = ArkanoidVectorEnv(3, observation="grid")
+    observations, _ = env.reset(seed=1)
+    twin.reset(seed=1)
+    observations -= 1.0  # in place, as when somebody normalises
+    restored = ArkanoidVectorEnv(3, observation="grid")
+    restored.restore(env.snapshot())
+    moving = env.layout["paddle"].start
+    expected = twin.step(np.zeros(3, int))[0][:, moving:]
+    for other in (pickle.loads(pickle.dumps(env)), restored):
+        assert (other.step(np.zeros(3, int))[0][:, moving:] == expected).all()

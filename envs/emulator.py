@@ -1,0 +1,53 @@
+"""What wrappers for Atari's games ask of the emulator: `env.unwrapped.ale`."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from .batch.batch import Batch
+
+
+class Emulator:
+    """The part of the Arcade Learning Environment's interface that wrappers use, and its names.
+
+    Gymnasium's `AtariPreprocessing` and stable-baselines3's `AtariWrapper` work with it.
+    """
+
+    def __init__(self, batch: "Batch") -> None:
+        self._batch = batch
+
+    def lives(self) -> int:
+        """Return how many balls are left, the present one included."""
+        return int(self._batch.worlds["lives"][0])
+
+    def game_over(self) -> bool:
+        """Return whether the last life is lost."""
+        return self.lives() == 0
+
+    def getScreenRGB(  # noqa: N802 (the emulator's name)
+        self, buffer: NDArray[np.uint8] | None = None
+    ) -> NDArray[np.uint8]:
+        """Return the picture, uint8 [height, width, 3], in the buffer if there is one."""
+        return self._screen(buffer, 3)
+
+    def getScreenGrayscale(  # noqa: N802 (the emulator's name)
+        self, buffer: NDArray[np.uint8] | None = None
+    ) -> NDArray[np.uint8]:
+        """Return the picture's brightness, uint8 [height, width], in the buffer if there is one."""
+        return self._screen(buffer, 1)
+
+    def _screen(self, buffer: Any, channels: int) -> NDArray[np.uint8]:
+        # Imported on demand: playing without pictures needs none of the drawing kernels.
+        from .draw.picture import draw_world
+
+        batch = self._batch
+        height, width = batch.config.picture_size if buffer is None else buffer.shape[:2]
+        picture = draw_world(batch.worlds, batch.rules, 0, height, width, channels)
+        picture = picture[:, :, 0] if channels == 1 else picture
+        if buffer is None:
+            return picture
+        buffer[...] = picture.reshape(buffer.shape)
+        filled: NDArray[np.uint8] = buffer
+        return filled

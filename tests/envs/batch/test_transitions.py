@@ -1,0 +1,99 @@
+"""Transitions of a replay are those that the player's environment gave."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from arkanoid.envs import ArkanoidEnv, ReplayDivergedError, replay_transitions
+
+VIEWS = [
+    {},
+    {"observation": "grid"},
+    {"observation": "rgb", "size": 30, "grey": True, "stack": 3},
+    {"observation": "dict", "size": 24, "channels": "last"},
+]
+
+
+def same(one, other):
+    if isinstance(one, dict):
+        assert one.keys() == other.keys()
+        return all(same(one[name], other[name]) for name in one)
+    return one.dtype == other.dtype and one.tobytes() == other.tobytes()
+
+
+def played(seen, actions="discrete6", **game):
+    """Play a game at random; return its replay and what `step` gave."""
+    env = ArkanoidEnv(**seen, actions=actions, capsule_rate=1.0, **game)
+    recorder = env.record()
+    before, _ = env.reset(seed=3)
+    env.action_space.seed(1)
+    steps = []
+    done = False
+    while not done:
+        action = env.action_space.sample()
+        after, *rest = env.step(action)
+        steps.append((before, action, *rest, after))
+        before, done = after, rest[1] or rest[2]
+    return recorder.replay(), steps
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("recorded", VIEWS[:2])
+def test_transitions_are_what_the_environment_gave(view, recorded):
+    """In any observation, whatever was observed when the game was recorded."""
+    game = {"sticky_action": 0.25, "speed": 2.0}
+    replay = played(recorded, **game)[0]
+    steps = played(view, **game)[1]
+    transitions = list(replay_transitions(replay, **view))
+    assert len(transitions) == len(steps) >= 20
+    for transition, (before, action, reward, terminated, truncated, info, after) in zip(
+        transitions, steps, strict=True
+    ):
+        assert same(transition.observation, before)
+        assert transition.action == action
+        assert transition.reward == reward
+        assert transition.terminated is terminated
+        assert transition.truncated is truncated
+        assert transition.info == info
+        assert same(transition.next_observation, after)
+    assert all(one.next_observation is two.observation for one, two in pairwise(transitions))
+
+
+def test_a_file_will_do_and_actions_take_another_form(tmp_path):
+    replay, steps = played({}, "discrete3")
+    replay.save(tmp_path / "game.replay")
+    for actions in ("discrete4", "discrete6", "box"):
+        numbers = [step[1] for step in steps]
+        transitions = list(replay_transitions(tmp_path / "game.replay", actions))
+        env = ArkanoidEnv(actions=actions)
+        assert all(env.action_space.contains(each.action) for each in transitions)
+        if actions == "discrete6":
+            assert [each.action for each in transitions] == numbers
+        if actions == "box":
+            moves = [each.action.tolist() for each in transitions]
+            assert moves == [[(0.0, -1.0, 1.0)[number], 0.0] for number in numbers]
+
+
+def test_what_a_form_of_actions_lacks_is_named():
+    replay, _ = played({}, "box", max_decisions=5)
+    with pytest.raises(ValueError, match=r"'discrete6' has no action for velocity and fire .* 0"):
+        replay_transitions(replay, "discrete6")
+    with pytest.raises(ValueError, match="actions must be box or one of"):
+        replay_transitions(replay, "buttons")
+
+
+def test_only_what_is_seen_can_be_chosen():
+    replay, _ = played({}, max_decisions=5)
+    with pytest.raises(ValueError, match="'reward' does not say how a game is seen"):
+        replay_transitions(replay, reward="score")
+    with pytest.raises(ValueError, match="leave it out"):
+        list(replay_transitions(replay, grey=True))
+
+
+def test_a_game_that_takes_another_course_is_noticed():
+    replay, _ = played({}, "discrete3")
+    commands = replay.commands.copy()
+    commands[:, 0] = np.abs(commands[:, 0])
+    object.__setattr__(replay, "commands", commands)
+    with pytest.raises(ReplayDivergedError):
+        list(replay_transitions(replay))
