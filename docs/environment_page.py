@@ -14,6 +14,7 @@ import arkanoid
 import gymnasium as gym
 from arkanoid.envs import rules
 from arkanoid.envs.config import ACTIONS, OBSERVATIONS, REWARD_MEANINGS, Config
+from arkanoid.envs.draw.status import STATUS_PARTS
 from arkanoid.envs.levels.starts import START_OPTIONS
 from arkanoid.envs.observe import planes, vector
 from arkanoid.envs.observe.layout import Part, slices
@@ -124,6 +125,20 @@ def part_table(parts: tuple[Part, ...]) -> str:
     return table(("part", "slice", "meaning"), rows)
 
 
+def status_table() -> str:
+    """Return the table of the status in small pictures."""
+    rows = (
+        (
+            f"`{part.name}`",
+            ("upper", "lower")[part.line],
+            f"{part.first}:{part.first + part.units}",
+            part.meaning,
+        )
+        for part in STATUS_PARTS
+    )
+    return table(("part", "line", "units", "meaning"), rows)
+
+
 def keyword_table() -> str:
     """Return the table of keywords."""
     rows = []
@@ -219,6 +234,16 @@ Pictures as `render` shows them, `[stack * channels, height, width]`, or with `c
 `[height, width, stack * channels]`. No display is needed. At a reset the first picture fills the
 stack.
 
+Pictures with less than 8 pixels per brick width (84 × 84, say) have no score line. The field's
+lowest two rows of cells, below the paddle, show the status instead; nothing else is drawn there.
+A unit is half a brick wide and as high as a brick: at 84 × 84, 3 × 3 pixels, and the units begin at
+row 78 and column 9. `arkanoid.envs.draw.status.status_layout(height, width)` returns the rows and
+columns of pixels of each part.
+
+{status_table()}
+
+In such pictures the ball is white, and everything else is darker than 226 of 255.
+
 ### `dict`
 
 A dictionary with the pictures as `"rgb"` and the numbers as `"vector"`. `layout` has the layout of
@@ -236,13 +261,14 @@ alive.
 All bricks of the first round stand, and the ball lies on the middle of the paddle. Fire serves it;
 after {rules.SERVE_TICKS} ticks it serves itself.
 
-`reset(seed=...)` determines everything that follows; a reset without a seed continues the random
-numbers. `reset(options=...)` takes:
+`reset(seed=..., options=...)` determines everything that follows: with a seed, the game forgets the
+options of earlier resets. A seed is an integer from 0 to 2^64 - 1. A reset without a seed continues
+the random numbers. The options are:
 
 {meanings("option", START_OPTIONS)}
 
-An option stays in force for later episodes until another reset changes it; None returns to the
-configuration.
+An option stays in force for later episodes until a reset changes it or has a seed; None returns to
+the configuration.
 
 ## Episode End
 
@@ -250,6 +276,9 @@ configuration.
 - *Truncated*: after `max_decisions` decisions (`info["truncation"]` is {DECISION_LIMIT}), or
   after {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss ({IDLE}). Observations show
   both clocks.
+
+A step before the first reset, or after an episode's end, raises `gymnasium.error.ResetNeeded`,
+unless the vector environment resets by itself (`autoreset_mode`).
 
 A cleared round does not end an episode: the next round begins. With `episodic_life=True` each lost
 life ends an episode (*terminated*), and the next one begins where the game is; the game is the same
@@ -275,6 +304,10 @@ Keywords of `gym.make` and `gym.make_vec`, and keys of the table `[env]` of an e
 The vector environment also takes:
 
 {table(("keyword", "default", "meaning"), vector_keywords)}
+
+An environment belongs to one thread at a time: a call of `step`, `reset`, `snapshot` or `restore`
+while another thread is in one of them raises a RuntimeError. A forked process may go on with its
+copy.
 
 ## Methods
 

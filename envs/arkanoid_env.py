@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .actions import COMMANDS, action_meanings, read_box, read_discrete
 from .batch.batch import Batch
 from .batch.snapshots import restore_snapshot, take_snapshot
-from .checks import check_integer
+from .checks import check_seed
 from .config import Config
 from .emulator import Emulator
 from .interface import (
@@ -23,7 +23,6 @@ from .interface import (
     frame_size,
     instance_metadata,
 )
-from .levels.generator import MAX_SEED
 from .masks import action_masks
 from .observe.parts import copy_of
 from .rules import TICKS_PER_SECOND
@@ -85,22 +84,26 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode.
 
-        A seed determines all that follows. Without one the generator goes on from where it is; with
-        `episodic_life` so does the game after the loss of a life, unless there are options.
+        Seed and options determine all that follows: a reset with a seed forgets the options of
+        earlier resets. Without a seed the generator goes on from where it is, and earlier options
+        stay in force; with `episodic_life` the game goes on after the loss of a life, unless there
+        are options.
 
         Args:
-            seed: of the game's random numbers.
+            seed: of the game's random numbers, from 0 to 2^64 - 1.
             options: how this and the following episodes begin: ``"level"`` (a name or path, or the
                 number of a round), ``"seed"`` (of a generated level; not the game's) and
                 ``"difficulty"``; see `arkanoid.envs.levels.starts`.
+
+        Raises:
+            TypeError, ValueError: the seed or an option is illegal; the game is as it was then.
         """
-        super().reset(seed=seed)
         check_options(options)
-        if seed is None and not self._batch.seeded[0]:
-            seed = int(self.np_random.integers(1 << 62))
-        if seed is not None:
-            self._batch.seed(0, seed)
-        self._batch.reset(_ALL, options, None if seed is None else _ALL)
+        chosen = check_seed(seed)
+        super().reset(seed=chosen)
+        if chosen is None and not self._batch.seeded[0]:
+            chosen = int(self.np_random.integers(1 << 62))
+        self._batch.reset(_ALL, options, None if chosen is None else [chosen])
         self._show()
         return self._shown()
 
@@ -113,6 +116,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         Raises:
             TypeError, ValueError: it is not in the action space. (Velocities beyond a bound count
                 as the bound.)
+            ResetNeeded: there was no reset yet, or the episode is over.
         """
         batch = self._batch
         table = self._commands
@@ -189,15 +193,15 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             seed: of the clone's random numbers from here on. None: they will be the same as in
                 this environment, so that a planner sees what chance will bring.
         """
+        chosen = check_seed(seed)
         clone = object.__new__(type(self))
         clone.__dict__.update(self.__dict__)
         clone._batch = self._batch.clone()
         clone._window = None
         if clone.render_mode == "human":
             clone.render_mode = None
-        if seed is not None:
-            check_integer("seed", seed, 0, MAX_SEED)
-            clone._batch.seed(0, seed)
+        if chosen is not None:
+            clone._batch.seed(0, chosen)
         return clone
 
     def record(self) -> "Recorder":

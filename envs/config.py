@@ -94,7 +94,9 @@ class Config:
     capsule_rate: float = _keyword(CAPSULE_RATE, "the fraction of coloured bricks that hide one")
     enemies: bool = _keyword(True, "whether there are enemies and the boss")
     speed: float = _keyword(1.0, "a factor on the ball's speed")
-    paddle: float = _keyword(1.0, "a factor on the paddle's width")
+    paddle: float = _keyword(
+        1.0, "a factor on the paddle's width; enlarged, it is at most as wide as the field"
+    )
     deflection: str = _keyword("angle", "how the paddle deflects a ball", DEFLECTION_MEANINGS)
     max_decisions: int = _keyword(27_000, "decisions after which the episode is truncated")
 

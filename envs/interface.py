@@ -69,7 +69,7 @@ def frame_size(render_size: Any) -> tuple[int, ...]:
         )
     for size in sizes:
         check_integer("render_size", size, 1, MAX_SIZE)
-    return sizes
+    return tuple(map(int, sizes))
 
 
 def check_render_mode(render_mode: str | None, legal: tuple[str, ...]) -> None:

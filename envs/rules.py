@@ -7,7 +7,7 @@ freezes globals.
 
 # Raise this with every change after which a game may take another course: replays and snapshots of
 # other versions are refused.
-RULES_VERSION = 1
+RULES_VERSION = 2
 
 TICKS_PER_SECOND = 60
 
@@ -31,7 +31,7 @@ SPEED_STAGE_HITS = (30, 55, 80, 105, 130, 150, 165)
 MAX_BALLS = 3
 
 PADDLE_WIDTH = 2.0
-LONG_PADDLE_WIDTH = 3.0  # enlarged
+LONG_PADDLE_WIDTH = 3.0  # enlarged; never wider than the field, see `paddle_widths`
 PADDLE_THICKNESS = 0.25
 PADDLE_TOP = 2.0
 PADDLE_Y = PADDLE_TOP - PADDLE_THICKNESS / 2
@@ -54,7 +54,7 @@ IDLE_TICKS = 3600  # without damage to a brick: the episode is truncated
 # More hits of one ball in one tick than the fastest ball of the rules can make in a full field.
 HITS_PER_TICK = 64
 
-EXTRA_LIFE_FIRST = 20_000  # points
+EXTRA_LIFE_FIRST = 20_000  # points; after it, every multiple of `EXTRA_LIFE_EVERY` gives a life
 EXTRA_LIFE_EVERY = 60_000
 
 # Kinds of bricks, in the order of their letters in a level file.

@@ -12,7 +12,7 @@ from .actions import action_meanings
 from .batch.batch import Autoreset, Batch
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .batch.stepping import tabulate_outcomes
-from .checks import check_integer
+from .checks import check_integer, check_seeds
 from .config import Config
 from .hints import BATCH_KEYWORDS
 from .interface import (
@@ -24,7 +24,6 @@ from .interface import (
     frame_size,
     instance_metadata,
 )
-from .levels.generator import MAX_SEED
 from .masks import action_masks
 from .observe.parts import copy_of, parts_of
 from .state import INFO_FIELDS, Worlds
@@ -124,15 +123,24 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         An int seeds world ``i`` with ``seed + i``; a sequence gives each world's own seed; None
         goes on with each world's generator. The options ``"level"``, ``"seed"`` and
         ``"difficulty"`` say how this and the following episodes of those worlds begin, see
-        `arkanoid.envs.levels.starts`. With `episodic_life` a world's game goes on after the loss of
-        a life, unless the world gets a seed or there are such options.
+        `arkanoid.envs.levels.starts`. They stay in force until the world gets a seed or other
+        options. With `episodic_life` a world's game goes on after the loss of a life, unless it
+        gets either.
+
+        Raises:
+            TypeError, ValueError: a seed or an option is illegal; the games are as they were then.
         """
-        super().reset(seed=seed if isinstance(seed, int) else None)
         check_options(options)
+        seeds = check_seeds(seed, self.num_envs)
         mask = self._everywhere
         if options and "reset_mask" in options:
             mask = self._reset_mask(options["reset_mask"])
-        self._batch.reset(mask, options, self._seed(seed, mask))
+        super().reset(seed=seeds[0] if isinstance(seed, int | np.integer) else None)
+        unseeded = np.flatnonzero(mask & ~self._batch.seeded).tolist()
+        for index in unseeded:
+            if seeds[index] is None:
+                seeds[index] = int(self.np_random.integers(1 << 62))
+        self._batch.reset(mask, options, seeds if seed is not None or unseeded else None)
         return self._observations(), self._infos(self._batch.outcomes, mask)
 
     def step(
@@ -148,14 +156,13 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         Args:
             actions: integers [n], or velocity and fire, [n, 2].
+
+        Raises:
+            ValueError: they are not in the action space.
+            ResetNeeded: a world was never reset, or with `autoreset_mode="Disabled"` its episode is
+                over.
         """
         batch = self._batch
-        if self._mode is Autoreset.DISABLED and batch.worlds["done"].any():
-            done = np.flatnonzero(batch.worlds["done"])[:8].tolist()
-            raise RuntimeError(
-                f"the episodes of worlds {done} are over: with autoreset_mode='Disabled' reset "
-                "them before the next step, reset(options={'reset_mask': ...})"
-            )
         batch.command(actions)
         batch.step()
         outcomes = batch.outcomes
@@ -211,7 +218,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             return tuple(self.snapshot(world) for world in range(self.num_envs))
         if name in ("observation_space", "action_space"):
             name = f"single_{name}"
-        value = getattr(self, name)
+        value: Any = getattr(self, name)
         if callable(value):
             value = value(*args, **kwargs)
             if name in _OF_EACH_WORLD:
@@ -294,12 +301,11 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         Raises:
             TypeError, ValueError: as `restore`.
         """
-        if seed is not None:
-            check_integer("seed", seed, 0, MAX_SEED)
+        seeds = check_seeds(seed, self.num_envs)
         spread_snapshot(self._batch, snapshot)
-        if seed is not None:
-            for index in range(self.num_envs):
-                self._batch.seed(index, seed + index)
+        for index, each in enumerate(seeds):
+            if each is not None:
+                self._batch.seed(index, each)
         return self._observations(), self._infos(self._batch.outcomes, self._everywhere)
 
     def record(self, world: int = 0) -> "Recorder":
@@ -313,36 +319,16 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         return Recorder(self._batch, world)
 
+    def close(self, **kwargs: Any) -> None:
+        """End the threads, also those that a step after an earlier `close` has started."""
+        super().close(**kwargs)
+        self.close_extras()
+
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
         # Gymnasium before 1.3 also closes an environment whose `__init__` has failed.
         if hasattr(self, "_batch"):
             self._batch.close()
-
-    def _seed(
-        self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]
-    ) -> NDArray[np.bool_]:
-        """Seed the masked worlds, and return which got a seed, bool [n].
-
-        A world that was never seeded gets a random seed.
-        """
-        seeded = np.zeros(self.num_envs, np.bool_)
-        if seed is None:
-            seeds: Sequence[int | None] = [None] * self.num_envs
-        elif isinstance(seed, int | np.integer):
-            seeds = [int(seed) + index for index in range(self.num_envs)]
-        else:
-            seeds = seed
-        if len(seeds) != self.num_envs:
-            raise ValueError(f"{len(seeds)} seeds for {self.num_envs} worlds; give one for each")
-        for index in np.flatnonzero(mask).tolist():
-            chosen = seeds[index]
-            if chosen is None and not self._batch.seeded[index]:
-                chosen = int(self.np_random.integers(1 << 62))
-            if chosen is not None:
-                self._batch.seed(index, int(chosen))
-                seeded[index] = True
-        return seeded
 
     def _reset_mask(self, mask: Any) -> NDArray[np.bool_]:
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:

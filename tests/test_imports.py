@@ -44,7 +44,7 @@ ORDER = {
         draw
         game
         levels
-        config state actions checks hints rules
+        config state actions checks hints rules ranges
     """,
     "agents": """
         cli

@@ -99,7 +99,7 @@ def read_settings(
     """Return the settings of a table, changed by overrides ``(dotted key, text)``.
 
     ``source`` names the table's origin in errors. Raises `SettingsError`, which names the place,
-    the key, what is expected and, of an unknown key, the nearest known one.
+    the key, what is expected and, of an unknown key, the one that is meant or all known ones.
     """
     known = describe_settings(schema)
     values = {
@@ -188,7 +188,7 @@ def _read_config(config: str, suffix: str) -> tuple[str, str]:
         if config in packaged_configs(suffix) and not path.is_file():
             file = resources.files(configs) / f"{config}{suffix}"
             return f"config {config!r}", file.read_text(encoding="utf-8")
-        return config, read_limited(path, _LARGEST_CONFIG).decode()
+        return config, read_limited(path, _LARGEST_CONFIG).decode("utf-8-sig")
     except ValueError as error:
         raise SettingsError(f"{config}: not a TOML file: {error}") from None
     except OSError as error:
@@ -250,13 +250,13 @@ def _unknown(key: str, known: Mapping[str, Setting], source: str) -> SettingsErr
     by_last_part = {name.rpartition(".")[2]: name for name in known}
     close = difflib.get_close_matches(key, known, n=1)
     close += [by_last_part[part] for part in difflib.get_close_matches(key, by_last_part, n=1)]
-    # There is always one to name: the nearest, however far.
-    close += difflib.get_close_matches(key, known, n=1, cutoff=0.0)
-    nearest = known[close[0]]
-    return SettingsError(
-        f"{source}: unknown key {key!r}; "
-        f"the nearest known key is {nearest.key!r} ({nearest.expected})"
-    )
+    if close:
+        nearest = known[close[0]]
+        hint = f"the nearest known key is {nearest.key!r} ({nearest.expected})"
+    else:
+        table = f"{key.partition('.')[0]}."
+        hint = f"known are {', '.join([name for name in known if name.startswith(table)] or known)}"
+    return SettingsError(f"{source}: unknown key {key!r}; {hint}")
 
 
 def _shown(value: Any) -> str:

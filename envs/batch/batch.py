@@ -1,24 +1,27 @@
 """A batch of worlds and the one way to step it, whether it holds one world or ten thousand."""
 
 import itertools
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from enum import IntEnum
 from functools import cached_property, partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...physics.kernels.threads import Threads
 from ..actions import BOX, COMMANDS, decode_actions, decode_velocities
 from ..config import Config
 from ..game.random import seed_state
 from ..game.rulebook import make_rules
 from ..levels.plan import LevelPlan, plan_levels
-from ..levels.starts import START_OPTIONS, choose_starts, forget_starts
+from ..levels.starts import AS_THE_CONFIGURATION_SAYS, read_start, set_starts
 from ..observe.choice import make_observer
 from ..state import GAME_OVER, Outcome, Outcomes, World, Worlds, copy_records, zeros_in_lines
 from .blocks import Block, divide, thread_count
+from .listeners import Listeners
+from .refusal import why_refused
 from .setup import describe_setup
 from .stepping import reset_worlds, step_worlds
 
@@ -31,19 +34,6 @@ class Autoreset(IntEnum):
     SAME_STEP = 2  # the same step resets it, and keeps the last observation and outcome apart
 
 
-class Listener(Protocol):
-    """Something that follows all that happens to a batch, for instance a recorder."""
-
-    def reset(self, mask: NDArray[np.bool_]) -> None:
-        """The worlds of a mask, bool [n], were reset."""
-
-    def step(self) -> None:
-        """A decision was played in each world."""
-
-    def interrupt(self) -> None:
-        """The worlds were brought into another state."""
-
-
 def _bytes_of(records: Any) -> NDArray[np.uint8]:
     """Return the bytes of records, uint8 [n, k]: copying records goes field by field."""
     view: NDArray[np.uint8] = records.view(np.uint8).reshape(len(records), -1)
@@ -52,6 +42,9 @@ def _bytes_of(records: Any) -> NDArray[np.uint8]:
 
 class Batch:
     """Worlds that are played together, with the arrays that their steps read and write.
+
+    It belongs to one thread at a time: where two threads use it at once, the second one gets a
+    RuntimeError.
 
     Args:
         num_worlds: how many, at least 1.
@@ -87,7 +80,7 @@ class Batch:
         self._table = COMMANDS.get(config.actions)
         self._most_threads = threads
         self.worlds: Worlds = zeros_in_lines((num_worlds,), World)
-        forget_starts(self.worlds)
+        set_starts(self.worlds, np.ones(num_worlds, np.bool_), AS_THE_CONFIGURATION_SAYS)
         self.outcomes: Outcomes = zeros_in_lines((num_worlds,), Outcome)
         self.observer = make_observer(config, num_worlds)
         self._prepare()
@@ -98,12 +91,12 @@ class Batch:
         self.commands: NDArray[np.float64] = np.zeros((count, 2))
         self.finals = copy_records(self.outcomes)
         self.final_observations = np.zeros(self.observations.shape, self.observations.dtype)
-        self.listeners: list[Listener] = []
+        self.listeners = Listeners()
         threads = self._most_threads or thread_count(count, self.config.observation)
-        first, *others = divide(count, threads)
-        self._blocks = [self._block(index) for index in first]  # the calling thread's share
-        self._others = [[self._block(index) for index in share] for share in others]
-        self._pool: ThreadPoolExecutor | None = None
+        self._shares = [[self._block(index) for index in share] for share in divide(count, threads)]
+        self._threads = Threads("arkanoid")
+        self._busy = False  # whether a thread is changing the worlds
+        self._look_who_waits()
 
     def clone(self) -> "Batch":
         """Return an independent batch in the same state, without listeners."""
@@ -124,7 +117,12 @@ class Batch:
         return Batch, arguments, (self.worlds, self.outcomes, self.observations)
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
-        self.restore(*state)
+        seeded = state[0]["random"] != 0
+        if not (_bytes_of(state[0])[~seeded] == _bytes_of(self.worlds)[~seeded]).all():
+            raise ValueError("a world without random numbers can't have played")
+        if seeded.any():
+            self._check(*(part[seeded] for part in state))
+        self._adopt(*state)
 
     @property
     def num_worlds(self) -> int:
@@ -152,6 +150,24 @@ class Batch:
     def setup(self) -> bytes:
         """What a state depends on besides itself, see `snapshots`."""
         return describe_setup(self.config, self.plan, self.rules, self.observations.dtype)
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Keep other threads out, or raise a RuntimeError if there is one."""
+        if self._busy:
+            raise why_refused(self.worlds, self._busy)
+        self._busy = True
+        try:
+            yield
+        finally:
+            self._busy = False
+
+    def _look_who_waits(self) -> None:
+        """Find out whether a world must be reset before the next step."""
+        waits = self.worlds["round_number"] == 0
+        if self.autoreset is Autoreset.DISABLED:
+            waits |= self.worlds["done"] != 0
+        self._waits = bool(waits.any())
 
     def check_world(self, index: int | None) -> None:
         """Raise a ValueError if there is no world with this index; None is legal."""
@@ -201,54 +217,101 @@ class Batch:
         self,
         mask: NDArray[np.bool_],
         options: dict[str, Any] | None = None,
-        anew: NDArray[np.bool_] | None = None,
+        seeds: Sequence[int | None] | None = None,
     ) -> None:
         """Begin a new episode in some worlds.
 
-        It is a new game, unless a life was just lost (`episodic_life`) and there are no options.
+        It is a new game, unless a life was just lost (`episodic_life`) and the world gets neither a
+        seed nor options.
 
         Args:
             mask: of these worlds, bool [n].
-            options: how the episodes begin, see `starts`.
-            anew: of worlds that begin a new game also after a lost life, bool [n].
-        """
-        if options:
-            choose_starts(self.worlds, mask, options, self.config, self.plan)
-            if any(option in options for option in START_OPTIONS):
-                anew = mask
-        if anew is not None:
-            self.worlds["done"][anew] = GAME_OVER
-        for block in self._all_blocks():
-            block.reset(mask[block.where])
-            block.observe(mask[block.where])
-        for listener in self.listeners:
-            listener.reset(mask)
+            options: how this and the following episodes begin, see `starts`.
+            seeds: of each world, or None. A world with a seed forgets its earlier options.
 
-    def check_over(self, worlds: NDArray[np.uint8]) -> None:
-        """Raise a ValueError if worlds (bytes) have an episode over, which this mode forbids."""
-        if self.autoreset is Autoreset.SAME_STEP and worlds.view(World)["done"].any():
+        Raises:
+            TypeError, ValueError: an option has an illegal value; then nothing changes.
+            RuntimeError: another thread is stepping the worlds.
+        """
+        start = read_start(options or {}, self.config, self.plan)
+        with self.alone():
+            if seeds is not None:
+                self._seed_anew(mask, seeds)
+            if start:
+                set_starts(self.worlds, mask, start)
+                self.worlds["done"][mask] = GAME_OVER
+            for block in self._all_blocks():
+                block.reset(mask[block.where])
+                block.observe(mask[block.where])
+            self._look_who_waits()
+            for listener in self.listeners:
+                listener.reset(mask)
+
+    def _seed_anew(self, mask: NDArray[np.bool_], seeds: Sequence[int | None]) -> None:
+        """Seed worlds of a mask; those with a seed will begin a game as if it were their first."""
+        seeded = mask & np.array([seed is not None for seed in seeds])
+        for index in np.flatnonzero(seeded).tolist():
+            self.seed(index, seeds[index])  # type: ignore[arg-type]
+        set_starts(self.worlds, seeded, AS_THE_CONFIGURATION_SAYS)
+        self.worlds["done"][seeded] = GAME_OVER
+
+    def restore(self, worlds: Any, outcomes: Any, observations: NDArray[Any]) -> None:
+        """Go on from another state: records or their bytes, of each world or of one for all.
+
+        Raises:
+            ValueError: no play leads to this state, or an episode is over in it, which this mode
+                forbids; the message names the field. Nothing changes then.
+        """
+        aligned = zeros_in_lines((len(worlds),), World), zeros_in_lines((len(worlds),), Outcome)
+        for records, found in zip(aligned, (worlds, outcomes), strict=True):
+            _bytes_of(records)[:] = _bytes_of(found)
+        self._check(*aligned, observations)
+        self._adopt(*aligned, observations)
+
+    def _check(self, worlds: Worlds, outcomes: Outcomes, observations: NDArray[Any]) -> None:
+        """Raise a ValueError if no play leads to this state, see `restore`."""
+        # Imported on demand: most play restores nothing.
+        from .validity import check_outcomes, check_worlds
+
+        check_worlds(worlds, self.rules, self.config.episodic_life)
+        check_outcomes(outcomes)
+        self.observer.check(observations)
+        if self.autoreset is Autoreset.SAME_STEP and worlds["done"].any():
             raise ValueError(
                 "an episode is over in the snapshot, and with autoreset_mode='SameStep' the next "
                 "one would have begun: restore it in an environment of another mode"
             )
 
-    def restore(self, worlds: Any, outcomes: Any, observations: NDArray[Any]) -> None:
-        """Go on from another state: records or their bytes, of each world or of one for all."""
+    def _adopt(self, worlds: Worlds, outcomes: Outcomes, observations: NDArray[Any]) -> None:
+        """Take a state that was checked."""
         _bytes_of(self.worlds)[:] = _bytes_of(worlds)
         _bytes_of(self.outcomes)[:] = _bytes_of(outcomes)
         self.observer.recall(observations)
         for listener in self.listeners:
             listener.interrupt()
+        self._look_who_waits()
 
     def step(self) -> None:
-        """Play one decision, as `commands` say, in each world, and observe it."""
-        self.observer.advance()
-        if self._others:
-            self._step_in_threads()
-        else:
-            self._step_blocks(self._blocks)
-        for listener in self.listeners:
-            listener.step()
+        """Play one decision, as `commands` say, in each world, and observe it.
+
+        Raises:
+            ResetNeeded: a world was never reset, or without autoreset its episode is over.
+            RuntimeError: another thread is stepping the worlds.
+        """
+        if self._waits or self._busy:
+            raise why_refused(self.worlds, self._busy)
+        self._busy = True
+        try:
+            self.observer.advance()
+            if len(self._shares) == 1:
+                over = self._step_blocks(self._shares[0])
+            else:
+                over = sum(self._threads.run(self._step_blocks, self._shares))
+            self._waits = over > 0 and self.autoreset is Autoreset.DISABLED
+            for listener in self.listeners:
+                listener.step()
+        finally:
+            self._busy = False
 
     def observe(self, mask: NDArray[np.bool_]) -> None:
         """Observe the worlds of a mask, bool [n], as they are."""
@@ -257,28 +320,19 @@ class Batch:
 
     def close(self) -> None:
         """End the threads; a later step starts them again."""
-        if self._pool is not None:
-            self._pool.shutdown()
-            self._pool = None
+        self._threads.close()
 
-    def _step_in_threads(self) -> None:
-        """Step each share in a thread of its own, one of them in the calling thread."""
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(len(self._others), "arkanoid")
-        # The kernels release the GIL.
-        running = [self._pool.submit(self._step_blocks, share) for share in self._others]
-        self._step_blocks(self._blocks)
-        for task in running:
-            task.result()
-
-    def _step_blocks(self, blocks: list[Block]) -> None:
-        """Play one decision in the worlds of some blocks, and observe them."""
+    def _step_blocks(self, blocks: list[Block]) -> int:
+        """Play one decision in the worlds of some blocks; return how many episodes are over."""
+        total = 0
         for block in blocks:
             over = block.play()
             # While the worlds are still in the cache.
             block.observe(block.everywhere)
             if over > 0 and self.autoreset is Autoreset.SAME_STEP:
                 self._begin_again(block)
+            total += over
+        return total
 
     def _begin_again(self, block: Block) -> None:
         """Begin new episodes where they are over, and keep apart how those ended."""
@@ -293,7 +347,7 @@ class Batch:
             outcomes[field][over] = ended[field]
 
     def _all_blocks(self) -> Iterator[Block]:
-        return itertools.chain(self._blocks, *self._others)
+        return itertools.chain.from_iterable(self._shares)
 
     def _block(self, index: slice) -> Block:
         worlds, outcomes = self.worlds[index], self.outcomes[index]

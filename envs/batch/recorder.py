@@ -1,7 +1,6 @@
 """Recording games: the commands given to one world of a batch, and checksums of its states."""
 
 import zlib
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -65,7 +64,7 @@ class Recorder:
     """Records the games of one world of a batch, each from its beginning.
 
     A game that has already begun is recorded only if it was just reset. A restored state ends the
-    recording until the next game begins.
+    recording until the next game begins. It records as long as somebody keeps it, or until `stop`.
 
     Args:
         batch: of the world.
@@ -92,7 +91,7 @@ class Recorder:
         self._reward = 0.0
         self._checksum = 0
         self._checksums: list[int] = []
-        batch.listeners.append(self)
+        batch.listeners.add(self)
         if batch.seeded[world] and batch.worlds["decisions"][world] == 0:
             self._begin()
 
@@ -120,8 +119,7 @@ class Recorder:
 
     def stop(self) -> None:
         """End the recording; what was recorded remains."""
-        with suppress(ValueError):
-            self._batch.listeners.remove(self)
+        self._batch.listeners.remove(self)
 
     def reset(self, mask: NDArray[np.bool_]) -> None:
         """Follow a reset of the worlds of a mask: to a new game, or to a game's next life."""

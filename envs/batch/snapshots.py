@@ -36,13 +36,14 @@ def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
     worlds = batch.worlds[share]
     if not batch.seeded[share].all():
         raise RuntimeError("there is no state yet: reset the environment before a snapshot")
-    content = (
-        _SIZES.pack(len(batch.setup), len(worlds)),
-        batch.setup,
-        worlds.tobytes(),
-        batch.outcomes[share].tobytes(),
-        batch.observations[share].tobytes(),
-    )
+    with batch.alone():
+        content = (
+            _SIZES.pack(len(batch.setup), len(worlds)),
+            batch.setup,
+            worlds.tobytes(),
+            batch.outcomes[share].tobytes(),
+            batch.observations[share].tobytes(),
+        )
     return seal(_MARK, _FORMAT, b"".join(content))
 
 
@@ -58,7 +59,8 @@ def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has another number of worlds, {len(state[0])} instead of "
             f"{batch.num_worlds}; spread() takes that of one world to all"
         )
-    batch.restore(*state)
+    with batch.alone():
+        batch.restore(*state)
 
 
 def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
@@ -73,7 +75,8 @@ def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has {len(state[0])} worlds, and spread() takes that of one: of a single "
             "environment, or snapshot(world)"
         )
-    batch.restore(*state)
+    with batch.alone():
+        batch.restore(*state)
 
 
 def _unpack(
@@ -83,26 +86,40 @@ def _unpack(
 
     Raises:
         TypeError: it is not bytes.
-        ValueError: it is corrupt, of another release, rules, configuration or levels, or it has an
-            episode that is over, where those begin anew in the same step.
+        ValueError: it is corrupt, or of another release, rules, configuration or levels.
     """
     content = unseal("snapshot", _MARK, _FORMAT, snapshot)
+    if len(content) < _SIZES.size:
+        raise ValueError("the snapshot is corrupt: it has no state")
     length, count = _SIZES.unpack_from(content)
     place = _SIZES.size + length
     setup = content[_SIZES.size : place]
     if setup != batch.setup:
-        theirs, ours = json.loads(bytes(setup)), json.loads(batch.setup)
+        theirs, ours = _read_setup(setup), json.loads(batch.setup)
         if theirs != ours:  # not only written differently, as 1 and 1.0
             raise ValueError(_difference(theirs, ours))
+    arrays = batch.worlds, batch.outcomes, batch.observations
+    if count == 0 or len(content) != place + count * sum(array[0].nbytes for array in arrays):
+        raise ValueError("the snapshot is corrupt: it has not the length of its worlds")
     parts: list[NDArray[Any]] = []
-    for array in (batch.worlds, batch.outcomes, batch.observations):
+    for array in arrays:
         size = count * array[0].nbytes
         parts.append(np.frombuffer(content[place : place + size], np.uint8).reshape(count, -1))
         place += size
     worlds, outcomes, observations = parts
-    batch.check_over(worlds)
     shape = (count, *batch.observations.shape[1:])
     return worlds, outcomes, observations.view(batch.observations.dtype).reshape(shape)
+
+
+def _read_setup(setup: memoryview) -> dict[str, Any]:
+    """Return a setup that differs from the expected one, with all of its parts."""
+    try:
+        read = json.loads(bytes(setup))
+        return {"config": dict(read["config"])} | {
+            name: read[name] for name in ("rules", "levels", "layout")
+        }
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise ValueError("the snapshot is corrupt: it does not say what it is of") from error
 
 
 def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:

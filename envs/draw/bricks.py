@@ -25,7 +25,10 @@ def begin_picture(lines: Lines, drawn: DrawnRecord, scenery: Scenery) -> None:
     for row in range(lines.shape[0]):
         copy_bytes(lines[row], scenery.background[row])
     drawn.begun = 1
+    # No world has these numbers: score line or status are out of date.
     drawn.score = -1
+    drawn.header_round = -1
+    drawn.idle = -1
     drawn.round_number = 0
     drawn.boxes = 0
     for cell in range(CELLS):

@@ -20,11 +20,13 @@ MAX_BOXES = 4 + MAX_BALLS + MAX_BEAMS + MAX_ENEMIES + MAX_SHARDS + GATES
 Drawn = record_dtype(
     [
         ("begun", np.int64),  # 0: nothing is drawn yet
-        # What the score line shows.
+        # What the score line shows, or the status.
         ("score", np.int64),
         ("lives", np.int64),
         ("power", np.int64),
         ("header_round", np.int64),
+        ("idle", np.int64),
+        ("decisions", np.int64),
         # The boxes to be erased, in pixels; right and bottom are excluded.
         ("boxes", np.int64),
         ("top", np.int64, (MAX_BOXES,)),

@@ -7,8 +7,9 @@ from .canvas import DrawnRecord, Lines
 from .foes import draw_boss, draw_enemies, draw_shards
 from .header import draw_header
 from .player import draw_balls, draw_beams, draw_falling_capsule, draw_paddle
-from .raster import Image, last_pixel
+from .raster import Image
 from .scenery import Scenery
+from .status import draw_status
 from .walls import draw_exit, draw_gates
 
 
@@ -33,8 +34,8 @@ def draw_frame(
         begin_picture(lines, drawn, scenery)
     erase_things(lines, drawn, scenery, world)
     draw_bricks(lines, drawn, scenery, world)
-    # Nothing is drawn below the field's lower edge.
-    image = picture[: last_pixel(scenery.views[0].bottom, picture.shape[0])]
+    # No thing is drawn below the field's lower edge, or over the status.
+    image = picture[: scenery.views[0].ground]
     draw_gates(image, drawn, scenery, world)
     draw_exit(image, drawn, scenery, world)
     draw_boss(image, drawn, scenery, world, rules)
@@ -46,3 +47,5 @@ def draw_frame(
     draw_balls(image, drawn, scenery, world)
     if scenery.views[0].header == 1:
         draw_header(image, lines, drawn, scenery, world)
+    else:
+        draw_status(picture, lines, drawn, scenery, world, rules)

@@ -1,13 +1,14 @@
 """The colours of the pictures: float64 [n, 3], red, green and blue from 0 to 255.
 
 The brightness of the eight brick colours differs by at least 20 from one to the next, and so does
-that of the seven capsules: they can be told apart in grey, and by colour-blind players.
+that of the seven capsules: they can be told apart in grey, and by colour-blind players. In small
+pictures, where the ball is one or two pixels, nothing is as bright as the ball.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rules import BRICK_LETTERS, CAPSULES, ENEMY_KINDS, POWERS
+from ..rules import BRICK_LETTERS, CAPSULES, ENEMY_KINDS, GOLD, POWERS, SILVER
 
 # Brightness of red, green and blue (ITU-R BT.601), the weights of most greyscale conversions.
 LUMA = np.array([0.299, 0.587, 0.114])
@@ -70,6 +71,9 @@ SEAM = _FIRST + 27
 OPENING = _FIRST + 28
 LAMP = _FIRST + 29
 ARROW = _FIRST + 30
+STATUS = _FIRST + 31
+STATUS_BAR = _FIRST + 32
+STATUS_BIT = _FIRST + 33
 
 _BRICKS = [
     (0, 0, 0),  # no brick
@@ -147,6 +151,9 @@ _OTHERS = [
     (4, 4, 10),  # OPENING
     (255, 206, 96),  # LAMP
     (255, 120, 220),  # ARROW
+    (4, 4, 10),  # STATUS
+    (214, 150, 80),  # STATUS_BAR
+    (130, 200, 226),  # STATUS_BIT
 ]
 
 # A capsule's letter is white, or dark if the body is brighter than this.
@@ -180,5 +187,32 @@ def _palette() -> NDArray[np.float64]:
 
 
 PALETTE = _palette()
-# No product of matrices: its rounding may differ from machine to machine.
-GREYS = (PALETTE * LUMA).sum(axis=1, keepdims=True)  # float64 [n, 1]
+# In small pictures everything is darker by this factor, except the ball, which is white.
+DIMMING = 0.88
+# There silver is the brightest kind of brick and gold the darkest: their bands of light and shadow
+# are too narrow to tell them from the eight colours in grey.
+_SMALL_METALS = {
+    # The body's colour at its upper and lower edge, its lit and shaded edges.
+    SILVER: [(244, 249, 255), (232, 240, 255), (250, 252, 255), (130, 138, 154)],
+    GOLD: [(104, 62, 0), (88, 50, 0), (124, 78, 8), (44, 24, 0)],
+}
+
+
+def palette_for(small: bool, channels: int) -> NDArray[np.float64]:
+    """Return the palette of pictures, float64 [n, channels].
+
+    Args:
+        small: whether they are too small for a score line.
+        channels: 3 for red, green and blue, 1 for grey.
+    """
+    palette = PALETTE.copy()
+    if small:
+        for kind, colours in _SMALL_METALS.items():
+            rows = [first + kind for first in (BRICK_BODY, BRICK_FOOT, BRICK_LIT, BRICK_SHADED)]
+            palette[rows] = colours
+        palette *= DIMMING
+        palette[BALL] = 255.0
+    if channels == 3:
+        return palette
+    # No product of matrices: its rounding may differ from machine to machine.
+    return np.asarray((palette * LUMA).sum(axis=1, keepdims=True))

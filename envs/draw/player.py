@@ -34,7 +34,9 @@ from .palette import (
     PADDLE_SHADED,
 )
 from .raster import (
+    Colour,
     Image,
+    blend,
     blend_channel,
     fill_disc,
     fill_rectangle,
@@ -43,6 +45,7 @@ from .raster import (
     height_part,
     last_pixel,
     mix,
+    rounded_coverage,
     row_span,
     span_coverage,
 )
@@ -55,6 +58,8 @@ CAPSULE_CORNER = 0.1
 CAPSULE_RIM = 0.035
 LETTER_HEIGHT = 0.27
 STRIPE = 0.2  # replaces a letter that would be too small to read
+# Four fourths of a disc of radius 1 cover pi / 4 of their pixels; the coverage may be wrong by 1/8.
+BRIGHTENING = 1.5
 
 _LETTERS = tuple(ord(letter) for letter in CAPSULE_LETTERS)
 
@@ -97,7 +102,7 @@ def draw_paddle(
 
 @inlined
 def draw_balls(image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldRecord) -> None:
-    """Draw the balls; in large pictures with a rim, and a highlight at the upper left."""
+    """Draw the balls: in large pictures with a rim and a highlight, in small ones bright."""
     view, palette = scenery.views[0], scenery.palette
     radius = BALL_RADIUS * view.scale
     for ball in range(MAX_BALLS):
@@ -110,7 +115,22 @@ def draw_balls(image: Image, drawn: DrawnRecord, scenery: Scenery, world: WorldR
             fill_disc(image, x, y, radius, palette[BALL_RIM])
             fill_disc(image, x - 0.12 * radius, y - 0.12 * radius, 0.78 * radius, palette[BALL])
         else:
-            fill_disc(image, x, y, radius, palette[BALL])
+            _fill_bright_disc(image, x, y, radius, palette[BALL])
+
+
+@inlined
+def _fill_bright_disc(image: Image, x: float, y: float, radius: float, colour: Colour) -> None:
+    """Fill a small disc so that at least one of its pixels has its colour, wherever it lies.
+
+    If a disc lies on the corner of four pixels, it covers a part of each. All parts are enlarged by
+    a factor with which these four would be full.
+    """
+    gain = max(1.0, BRIGHTENING / (radius * radius))
+    left, top, right, bottom = x - radius, y - radius, x + radius, y + radius
+    for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
+        for column in range(first_pixel(left), last_pixel(right, image.shape[1])):
+            part = rounded_coverage(row, column, left, top, right, bottom, radius)
+            blend(image, row, column, colour, min(1.0, gain * part))
 
 
 @inlined

@@ -21,16 +21,16 @@ from .palette import (
     FIELD_LOWER,
     FIELD_UPPER,
     FRAME,
-    GREYS,
     LABEL,
-    PALETTE,
     PATTERN,
     RIVET,
     SEAM,
     SHINE,
+    STATUS,
     WALL,
     WALL_LIT,
     WALL_SHADED,
+    palette_for,
 )
 from .raster import (
     Colour,
@@ -47,6 +47,7 @@ from .view import (
     EXIT_BOTTOM,
     EXIT_TOP,
     GATE_WIDTH,
+    HEADER_SCALE,
     WALL_WIDTH,
     ViewRecord,
     Views,
@@ -111,7 +112,7 @@ def make_scenery(height: int, width: int, channels: int) -> Scenery:
         channels: 3 for red, green and blue, 1 for grey.
     """
     view = make_view(height, width)
-    palette = PALETTE if channels == 3 else GREYS
+    palette = palette_for(not view[0].header, channels)
     background = np.zeros((height, width, channels), np.uint8)
     painter = _Painter(background, view[0], palette)
     _draw_backdrop(painter)
@@ -119,6 +120,9 @@ def make_scenery(height: int, width: int, channels: int) -> Scenery:
     if view[0].header:
         _draw_pattern(painter)
         _draw_labels(painter)
+    else:
+        lines, units = view[0].lines, view[0].units
+        background[lines[0] : lines[-1], units[0] : units[-1]] = np.rint(palette[STATUS])
     rows, columns = view[0].rows, view[0].columns
     lattice = background[rows[0] : rows[-1], columns[0] : columns[-1]]
     looks = np.repeat(lattice[np.newaxis], LOOKS, axis=0)
@@ -284,9 +288,11 @@ def draw_brick(
     fill_rectangle(image, left, top, right - bevel, bottom - bevel, lit, lit)
     fill_rectangle(image, left + bevel, top + bevel, right - bevel, bottom - bevel, body, foot)
     if kind >= SILVER and damage == 0:
+        # Where bands of light are as wide as a pixel, gold has dark bands to differ from silver.
+        dark = kind == GOLD and scale < HEADER_SCALE
         _draw_shine(
             image,
-            palette[SHINE],
+            palette[BRICK_SHADED + GOLD if dark else SHINE],
             left + bevel,
             top + bevel,
             right - bevel,
@@ -301,7 +307,7 @@ def draw_brick(
 def _draw_shine(
     image: Image, colour: Colour, left: float, top: float, right: float, bottom: float, scale: float
 ) -> None:
-    """Draw a wide and a narrow bright band across a brick of metal."""
+    """Draw a wide and a narrow band across a brick of metal."""
     for row in range(first_pixel(top), last_pixel(bottom, image.shape[0])):
         height = overlap(float(row), row + 1.0, top, bottom)
         for column in range(first_pixel(left), last_pixel(right, image.shape[1])):

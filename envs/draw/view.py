@@ -21,6 +21,11 @@ EXIT_TOP = 2.5
 # ceiling are left out, and the field fills the height (84 x 84: exactly 6 pixels per brick width).
 HEADER_SCALE = 8.0
 
+# Instead, small pictures show the status of the game along the field's lower edge: in two lines, as
+# high as bricks, of units that are half as wide as bricks.
+STATUS_LINES = 2
+STATUS_UNITS = 2 * COLUMNS
+
 # Lengths in pixels, x to the right and y down.
 View = record_dtype(
     [
@@ -28,10 +33,14 @@ View = record_dtype(
         ("left", np.float64),  # x of the field's left edge
         ("bottom", np.float64),  # y of the field's lower edge
         ("header", np.int64),  # 1: there is a score line
+        ("ground", np.int64),  # no thing is drawn in this row of pixels or below
         # The pixels at which the cells of the lattice begin, rounded: no pixel belongs to two
         # cells, and bricks are crisp.
         ("columns", np.int64, (COLUMNS + 1,)),
         ("rows", np.int64, (ROWS + 1,)),
+        # The same for lines and units of the status.
+        ("lines", np.int64, (STATUS_LINES + 1,)),
+        ("units", np.int64, (STATUS_UNITS + 1,)),
     ]
 )
 ViewRecord: TypeAlias = Any  # one `View`
@@ -54,6 +63,12 @@ def make_view(height: int, width: int) -> Views:
     for row in range(ROWS + 1):
         y = LATTICE_TOP - row * BRICK_HEIGHT
         record.rows[row] = math.floor(record.bottom - y * scale + 0.5)
+    for line in range(STATUS_LINES + 1):
+        y = (STATUS_LINES - line) * BRICK_HEIGHT
+        record.lines[line] = min(height, math.floor(record.bottom - y * scale + 0.5))
+    for unit in range(STATUS_UNITS + 1):
+        record.units[unit] = math.floor(record.left + unit * scale / 2 + 0.5)
+    record.ground = min(height, math.ceil(record.bottom)) if record.header else record.lines[0]
     return view
 
 

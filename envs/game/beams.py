@@ -52,13 +52,13 @@ def shoot(world: WorldRecord, rules: RulesRecord) -> None:
 @inner
 def _start_beam(world: WorldRecord, offset: float) -> None:
     """Let a beam start on the paddle, at an offset from its middle."""
-    beam = 0
-    while world.beam_state[beam] != ABSENT:
-        beam += 1
-    world.beams += 1
-    world.beam_state[beam] = FLYING
-    world.beam_x[beam] = world.paddle_x + offset
-    world.beam_y[beam] = PADDLE_TOP + 0.5 * BEAM_HEIGHT
+    for beam in range(MAX_BEAMS):
+        if world.beam_state[beam] == ABSENT:
+            world.beams += 1
+            world.beam_state[beam] = FLYING
+            world.beam_x[beam] = world.paddle_x + offset
+            world.beam_y[beam] = PADDLE_TOP + 0.5 * BEAM_HEIGHT
+            return
 
 
 @inner

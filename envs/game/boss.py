@@ -67,9 +67,15 @@ def throw_shards(world: WorldRecord) -> None:
     world.shard_wait = max(0, world.shard_wait - 1)
     if world.shard_wait > 0 or world.shards == MAX_SHARDS:
         return
-    shard = 0
-    while world.shard_state[shard] != ABSENT:
-        shard += 1
+    for shard in range(MAX_SHARDS):
+        if world.shard_state[shard] == ABSENT:
+            _throw_shard(world, shard)
+            return
+
+
+@inner
+def _throw_shard(world: WorldRecord, shard: int) -> None:
+    """Throw a shard that is not there yet towards the paddle."""
     x, y = world.paddle_x - BOSS_X, PADDLE_Y - (BOSS_Y - MOUTH)
     part = SHARD_SPEED / math.sqrt(x * x + y * y)
     world.shards += 1

@@ -29,6 +29,9 @@ from .scoring import add_score
 from .serve import balls_in_play
 from .shapes import CAPSULE_SHAPE
 
+# Three draws in four are legal. That so many in a row are not has a chance below 1e-37.
+_DRAWS = 64
+
 
 @inlined
 def drop_capsule(world: WorldRecord, rules: RulesRecord, cell: int) -> None:
@@ -43,10 +46,11 @@ def drop_capsule(world: WorldRecord, rules: RulesRecord, cell: int) -> None:
 @inlined
 def _draw_capsule(world: WorldRecord) -> int:
     """Draw a kind of capsule whose effect the player does not have yet."""
-    kind = capsule_by_weight(uniform(world))
-    while kind == world.power or (kind == BREAK and world.exit_open == 1):
+    for _ in range(_DRAWS):
         kind = capsule_by_weight(uniform(world))
-    return kind
+        if kind != world.power and (kind != BREAK or world.exit_open == 0):
+            return kind
+    return SLOW
 
 
 @kernel

@@ -86,9 +86,15 @@ def open_gates(world: WorldRecord) -> None:
         world.enemy_wait -= 1
     if world.enemy_wait > 0:
         return
-    enemy = 0
-    while world.enemy_state[enemy] != ABSENT:
-        enemy += 1
+    for enemy in range(MAX_ENEMIES):
+        if world.enemy_state[enemy] == ABSENT:
+            _enter(world, enemy)
+            return
+
+
+@inner
+def _enter(world: WorldRecord, enemy: int) -> None:
+    """Let an enemy that is not there yet come in through the open gate."""
     world.enemies += 1
     world.enemy_state[enemy] = ENTERING
     world.enemy_kind[enemy] = int(uniform(world) * ENEMY_KINDS)

@@ -59,11 +59,18 @@ def _slow_balls(world: WorldRecord, rules: RulesRecord) -> None:
 
 
 @inlined
+def _first_ball(world: WorldRecord) -> int:
+    """Return the first ball that is there; in a game there always is one."""
+    for ball in range(MAX_BALLS):
+        if world.ball_state[ball] != ABSENT:
+            return ball
+    return 0
+
+
+@inlined
 def _disrupt_ball(world: WorldRecord, rules: RulesRecord) -> None:
     """Split the only ball into three; a ball that lies on the paddle is served first."""
-    source = 0
-    while world.ball_state[source] == ABSENT:
-        source += 1
+    source = _first_ball(world)
     if world.ball_state[source] == HELD:
         release_ball(world, rules, source)
     sine, cosine = heading(rules, DISRUPT_ANGLE)

@@ -18,15 +18,13 @@ from ..rules import (
     COLUMNS,
     DEFLECTIONS,
     LATTICE_TOP,
-    LONG_PADDLE_WIDTH,
     PADDLE_SPEED,
-    PADDLE_WIDTH,
     REWARDS,
     ROWS,
     UNBREAKABLE,
 )
 from ..state import SharedRules
-from .shapes import game_shapes
+from .shapes import game_shapes, paddle_widths
 
 if TYPE_CHECKING:
     from ..config import Config
@@ -92,8 +90,9 @@ def make_rules(config: "Config", plan: "LevelPlan") -> SharedRules:
     record.brick_values[:] = brick_values()
     record.ball_speed = BALL_SPEED * config.speed
     record.paddle_speed = PADDLE_SPEED
-    record.paddle_half = PADDLE_WIDTH * config.paddle / 2
-    record.long_paddle_half = LONG_PADDLE_WIDTH * config.paddle / 2
+    width, long_width = paddle_widths(config.paddle)
+    record.paddle_half = width / 2
+    record.long_paddle_half = long_width / 2
     record.frame_skip = config.frame_skip
     record.sticky_action = config.sticky_action
     record.auto_fire = config.actions == "discrete3"

@@ -18,9 +18,9 @@ def add_score(world: WorldRecord, points: int) -> None:
     world.score += points
     if world.score >= world.next_life:
         # No loop: LLVM turns one into a division of 128 bits, which Numba cannot link.
-        gained = 1 + (world.score - world.next_life) // EXTRA_LIFE_EVERY
-        gain_lives(world, gained)
-        world.next_life += gained * EXTRA_LIFE_EVERY
+        multiples = world.score // EXTRA_LIFE_EVERY  # that the score has reached
+        gain_lives(world, 1 + multiples - world.next_life // EXTRA_LIFE_EVERY)
+        world.next_life = (multiples + 1) * EXTRA_LIFE_EVERY
 
 
 @inner

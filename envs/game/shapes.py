@@ -20,6 +20,7 @@ from ..rules import (
     BRICK_WIDTH,
     CAPSULE_HEIGHT,
     CAPSULE_WIDTH,
+    FIELD_WIDTH,
     LONG_PADDLE_WIDTH,
     PADDLE_THICKNESS,
     PADDLE_WIDTH,
@@ -67,6 +68,15 @@ def paddle_collider(width: float) -> Convex:
     )
 
 
+def paddle_widths(paddle: float) -> tuple[float, float]:
+    """Return the paddle's width, plain and enlarged; none is wider than the field.
+
+    Args:
+        paddle: factor on the paddle's width, at most 5.
+    """
+    return PADDLE_WIDTH * paddle, min(LONG_PADDLE_WIDTH * paddle, FIELD_WIDTH)
+
+
 def boss_collider() -> Convex:
     """Return the boss's collider: a face with a broad brow and a narrow chin."""
     return Convex(
@@ -105,10 +115,11 @@ def game_shapes(paddle: float) -> tuple[Any, Any]:
     Args:
         paddle: factor on the paddle's width.
     """
+    width, long_width = paddle_widths(paddle)
     return shape_table(
         [
-            paddle_collider(PADDLE_WIDTH * paddle),
-            paddle_collider(LONG_PADDLE_WIDTH * paddle),
+            paddle_collider(width),
+            paddle_collider(long_width),
             Particle(BALL_RADIUS),
             AxisAlignedRectangle(BRICK_WIDTH, BRICK_HEIGHT),
             AxisAlignedRectangle(CAPSULE_WIDTH, CAPSULE_HEIGHT),

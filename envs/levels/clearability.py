@@ -25,8 +25,8 @@ def search_reachable(kinds: Kinds) -> None:
 
     An earlier search stays valid when a gap is opened: this one goes on from it.
     """
-    changed = True
-    while changed:
+    # Each round but the last reaches a cell.
+    for _ in range(CELLS + 1):
         changed = False
         # Upward first, because most ways lead straight up, then downward.
         for step in range(2 * CELLS):
@@ -36,6 +36,8 @@ def search_reachable(kinds: Kinds) -> None:
                 changed = True
                 if cell < COLUMNS:
                     _reach_top_row(kinds)
+        if not changed:
+            return
 
 
 @kernel

@@ -85,7 +85,8 @@ def load_level(name_or_path: str) -> Level:
             f"({', '.join(level_names())}).{hint}"
         )
     try:
-        return parse_level(path.read_text("utf-8"), name_or_path)
+        # Some editors begin a file with a byte-order mark.
+        return parse_level(path.read_text("utf-8-sig"), name_or_path)
     except UnicodeDecodeError as error:
         raise ValueError(f"{name_or_path}: the file is not UTF-8 text: {error}") from None
 

@@ -334,7 +334,9 @@ def _recolour(cells: Kinds, key: np.uint64, recipe: Recipe, cell: int) -> None:
 def _open_gold(kinds: Kinds, cells: Kinds, key: np.uint64, recipe: Recipe) -> None:
     """Colour golden bricks, each with its copies, until a ball can come to every brick."""
     search_reachable(kinds)
-    while count_unreached(kinds) > 0:
+    for _ in range(cells.shape[0]):  # each round colours a cell
+        if count_unreached(kinds) == 0:
+            break
         _recolour(cells, key, recipe, _gold_to_open(kinds, cells, key, recipe))
         search_reachable(kinds)
     clear_search(kinds)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..checks import check_integer, check_number
 from ..config import Config
+from ..rules import EMPTY
 from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED
 from .generator import MAX_SEED
 from .plan import LevelPlan, check_boss, level_table
@@ -20,62 +21,60 @@ START_OPTIONS = {
 MAX_ROUND = 10**9
 
 
-def forget_starts(worlds: Any) -> None:
-    """Let the episodes of all worlds begin as the configuration says."""
-    worlds["start"] = AS_CONFIGURED
-    worlds["start_round"] = 1
-    worlds["start_difficulty"] = -1.0
+# The fields of `World` that say how episodes begin, where they begin as the configuration says.
+AS_THE_CONFIGURATION_SAYS: dict[str, Any] = {
+    "start": AS_CONFIGURED,
+    "start_round": 1,
+    "start_seed": 0,
+    "start_difficulty": -1.0,
+    "start_boss": 0,
+    "start_kind": EMPTY,
+}
 
 
-def choose_starts(
-    worlds: Any,
-    mask: NDArray[np.bool_],
-    options: dict[str, Any],
-    config: Config,
-    plan: LevelPlan,
-) -> None:
-    """Set how the episodes of the worlds in a mask (bool [n]) begin from now on.
+def set_starts(worlds: Any, mask: NDArray[np.bool_], fields: dict[str, Any]) -> None:
+    """Set how the episodes of the worlds in a mask (bool [n]) begin from now on."""
+    for name, value in fields.items():
+        worlds[name][mask] = value
+
+
+def read_start(options: dict[str, Any], config: Config, plan: LevelPlan) -> dict[str, Any]:
+    """Return the fields of `World` that options set, and their values.
 
     Raises:
-        TypeError, ValueError: an option has an illegal value; then nothing changes.
+        TypeError, ValueError: an option has an illegal value.
     """
     level, seed = options.get("level"), options.get("seed")
     if level is not None and seed is not None:
         raise ValueError(f"give reset either a level or a seed; got both, {level!r} and {seed!r}")
-    difficulty = options.get("difficulty")
-    if difficulty is not None:
-        check_number("options['difficulty']", difficulty, 0.0, 1.0)
+    fields: dict[str, Any] = {}
     if "level" in options or "seed" in options:
-        _choose_first_round(worlds, mask, level, seed, config, plan)
+        fields |= _first_round(level, seed, config, plan)
     if "difficulty" in options:
-        worlds["start_difficulty"][mask] = -1.0 if difficulty is None else difficulty
+        difficulty = options["difficulty"]
+        if difficulty is not None:
+            check_number("options['difficulty']", difficulty, 0.0, 1.0)
+        fields["start_difficulty"] = -1.0 if difficulty is None else difficulty
+    return fields
 
 
-def _choose_first_round(
-    worlds: Any,
-    mask: NDArray[np.bool_],
-    level: Any,
-    seed: Any,
-    config: Config,
-    plan: LevelPlan,
-) -> None:
-    start, number = AS_CONFIGURED, 1
+def _first_round(level: Any, seed: Any, config: Config, plan: LevelPlan) -> dict[str, Any]:
     if seed is not None:
         check_integer("options['seed']", seed, 0, MAX_SEED)
-        start = GIVEN_SEED
-        worlds["start_seed"][mask] = seed
-        worlds["start_boss"][mask] = 0
-    elif isinstance(level, str):
+        return {"start": GIVEN_SEED, "start_round": 1, "start_seed": seed, "start_boss": 0}
+    number = 1
+    if isinstance(level, str):
         check_boss(config, level)
-        if level in plan.names:
-            number = plan.names.index(level) + 1
-        else:
-            start = GIVEN_LAYOUT
+        if level not in plan.names:
             record = level_table([level])[0]
-            worlds["start_kind"][mask] = record["kind"]
-            worlds["start_boss"][mask] = record["boss"]
+            return {
+                "start": GIVEN_LAYOUT,
+                "start_round": 1,
+                "start_kind": record["kind"],
+                "start_boss": record["boss"],
+            }
+        number = plan.names.index(level) + 1
     elif level is not None:
         check_integer("options['level'], if it is no name,", level, 1, MAX_ROUND)
         number = level
-    worlds["start"][mask] = start
-    worlds["start_round"][mask] = number
+    return {"start": AS_CONFIGURED, "start_round": number}

@@ -38,6 +38,11 @@ class DictObserver:
         for observer in self._observers.values():
             observer.advance()
 
+    def check(self, observations: NDArray[Any]) -> None:
+        """Raise a ValueError if no world could be observed like this."""
+        for name, observer in self._observers.items():
+            observer.check(observations[name])
+
     def recall(self, observations: NDArray[Any]) -> None:
         """Go on from these pictures and numbers."""
         for name, observer in self._observers.items():

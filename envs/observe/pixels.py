@@ -110,6 +110,10 @@ class PixelObserver:
             self._place(previous + 1 if previous + 1 < self._row.shape[1] else self._stack - 1)
             self._moved = max(0, previous + 1 - self._newest)
 
+    def check(self, observations: NDArray[Any]) -> None:
+        """Raise a ValueError if no world could be observed like this."""
+        # Any byte is a legal pixel.
+
     def recall(self, observations: NDArray[Any]) -> None:
         """Go on from these pictures."""
         self.observations[:] = observations

@@ -57,6 +57,7 @@ from .shown import (
     ShownRow,
     bricks_to_write,
     changed_cell,
+    check_within,
     forget_shown,
     nothing_shown,
 )
@@ -155,6 +156,13 @@ class GridObserver:
 
     def advance(self) -> None:
         """Do nothing: a grid shows the present only."""
+
+    def check(self, observations: NDArray[Any]) -> None:
+        """Raise a ValueError if no world could be observed like this."""
+        check_within(observations, -1.0, 1.0)
+        moving = observations.reshape(len(observations), -1)[:, _MOVING:]
+        if (np.count_nonzero(moving, axis=1) > MAX_MARKS).any():
+            raise ValueError("the observations show more moving things than a game has")
 
     def recall(self, observations: NDArray[Any]) -> None:
         """Go on from these grids."""

@@ -33,6 +33,9 @@ class Observer(Protocol):
     def advance(self) -> None:
         """Begin a new step: the next observations follow the present ones."""
 
+    def check(self, observations: NDArray[Any]) -> None:
+        """Raise a ValueError if these, [n, ...], can't be observations of worlds."""
+
     def recall(self, observations: NDArray[Any]) -> None:
         """Take these as the latest observations, [n, ...], or [1, ...] for all worlds.
 

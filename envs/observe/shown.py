@@ -32,6 +32,12 @@ def forget_shown(shown: NDArray[np.int64]) -> None:
     shown[:] = _UNKNOWN, 1, 1
 
 
+def check_within(observations: NDArray[Any], low: float, high: float) -> None:
+    """Raise a ValueError if a number of observations is out of a range, or NaN."""
+    if not (observations.min() >= low and observations.max() <= high):
+        raise ValueError(f"an observation can't be: a number is not between {low:g} and {high:g}")
+
+
 @inlined
 def bricks_to_write(world: WorldRecord, shown: ShownRow) -> int:
     """Return how many of the latest changes of bricks are not shown yet, or `ALL_BRICKS`.

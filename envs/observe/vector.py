@@ -58,6 +58,7 @@ from .shown import (
     ShownRow,
     bricks_to_write,
     changed_cell,
+    check_within,
     forget_shown,
     nothing_shown,
 )
@@ -176,6 +177,10 @@ class VectorObserver:
 
     def advance(self) -> None:
         """Do nothing: a vector shows the present only."""
+
+    def check(self, observations: NDArray[Any]) -> None:
+        """Raise a ValueError if no world could be observed like this."""
+        check_within(observations, -1.0, 1.0)
 
     def recall(self, observations: NDArray[Any]) -> None:
         """Go on from these vectors."""

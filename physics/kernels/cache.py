@@ -14,14 +14,13 @@ from pathlib import Path
 
 import platformdirs
 
-from .digest import digest, last_edit
+from .digest import digest, is_edited
 from .messages import CACHE_VARIABLE, say_uncached, say_unwritable
 
 # Long enough for a project that pauses for a holiday, short enough to be no burden: a folder holds
 # a few MB, and every edit of a kernel begins new ones.
 PRUNE_AFTER = 30 * 86_400.0  # seconds
 
-_PROCESS_START = time.time()
 _FOLDER_NAME = re.compile("[0-9a-f]{16}")  # a digest
 
 
@@ -34,11 +33,11 @@ def writable_folder(file: Path, compiler: str) -> Path | None:
 
     Returns:
         None if nothing can be kept: there is no such file (the function was typed at a prompt or
-        lies in an archive), sources were edited after this process began (it may have imported
-        older ones), or no cache folder can be written.
+        lies in an archive), sources were edited after this process read them, or no cache folder
+        can be written.
     """
     file = file.resolve()
-    if not file.is_file() or last_edit(file) > _PROCESS_START:
+    if not file.is_file() or is_edited(file):
         return None
     root = _cache_root()
     if root is None:

@@ -5,6 +5,10 @@ a function it *calls*, and then runs stale machine code. Here the digest covers 
 file of this package that it imports, directly or not: to be stale, a kernel would have to call
 something that it cannot name. A constant that a kernel reads must therefore be written in source,
 not computed from the contents of some other file.
+
+A process runs the sources that it imported, which may have been edited since. It reads each file
+once, while it imports the kernels, and afterwards only compares the file's time and size with those
+it had then. So no clock matters: a file may be dated in the future.
 """
 
 import ast
@@ -12,9 +16,17 @@ import hashlib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 PACKAGE = __name__.rpartition(".physics.")[0]
 _PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
+
+
+# These decide where machine code is kept and what the user is told, not what the machine code is.
+_WITHOUT_INFLUENCE = frozenset(
+    Path(__file__).resolve().with_name(name)
+    for name in ("cache.py", "code_files.py", "messages.py", "sealed.py")
+)
 
 
 @cache
@@ -22,14 +34,13 @@ def digest(file: Path, compiler: str) -> str:
     """Return 16 hexadecimal digits for a source file, what it imports, and the compiler's state."""
     result = hashlib.sha256(compiler.encode())
     for source in sorted(_import_closure(file)):
-        result.update(source.read_bytes())
+        result.update(_read(source).digest)
     return result.hexdigest()[:16]
 
 
-@cache
-def last_edit(file: Path) -> float:
-    """Return when the file or one that it imports was edited, in seconds since the epoch."""
-    return max(source.stat().st_mtime for source in _import_closure(file))
+def is_edited(file: Path) -> bool:
+    """Return whether the file, or one that it imports, changed after this process read it."""
+    return any(_stamp(source) != _read(source).stamp for source in _import_closure(file))
 
 
 @cache
@@ -38,21 +49,44 @@ def _import_closure(file: Path) -> frozenset[Path]:
     found = {file}
     frontier = [file]
     while frontier:
-        new = _imported_files(frontier.pop()) - found
+        new = _read(frontier.pop()).imports - found
         found |= new
         frontier += new
     return frozenset(found)
 
 
+class _Source(NamedTuple):
+    """A source file when this process first read it."""
+
+    stamp: tuple[int, int] | None
+    digest: bytes
+    imports: frozenset[Path]
+
+
 @cache
-def _imported_files(file: Path) -> frozenset[Path]:
+def _read(file: Path) -> _Source:
+    stamp = _stamp(file)
+    content = file.read_bytes()
+    return _Source(stamp, hashlib.sha256(content).digest(), _imported_files(file, content))
+
+
+def _stamp(file: Path) -> tuple[int, int] | None:
+    """Return a file's time in nanoseconds and its size in bytes, None if it is gone."""
+    try:
+        status = file.stat()
+    except OSError:
+        return None
+    return status.st_mtime_ns, status.st_size
+
+
+def _imported_files(file: Path, content: bytes) -> frozenset[Path]:
     """Return the files of the package that one file names in its import statements."""
     found = set()
-    for node in ast.walk(ast.parse(file.read_bytes())):
+    for node in ast.walk(ast.parse(content)):
         for folder, dotted in _imported_names(node, file):
             path = folder.joinpath(*dotted.split("."))
             found |= {path.with_name(f"{path.name}.py"), path / "__init__.py"}
-    return frozenset(path for path in found if path.is_file())
+    return frozenset(path for path in found - _WITHOUT_INFLUENCE if path.is_file())
 
 
 def _imported_names(node: ast.AST, file: Path) -> Iterator[tuple[Path, str]]:

@@ -13,7 +13,8 @@ has one test for each part, which says what is missing and where it is used:
 ``Dispatcher._cache``               to put our cache in place of Numba's
 ``FunctionCache``                   our cache is a subclass
 ``FunctionCache._impl``             to name the files of machine code
-``FunctionCache._cache_file``       the same, by its ``_data_name``
+``FunctionCache._cache_file``       to put our files in place of Numba's
+``serialize.dumps``                 to write them
 ``event`` ``numba:compile``         to notice that the compiler is at work
 ``intrinsic, arrayobj``             to make an array that counts no references
 ==================================  ================================================================
@@ -24,9 +25,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from pickle import UnpicklingError
 from typing import Any, cast
-from uuid import uuid4
 
 import numba
 from numba.core import event as events
@@ -34,8 +33,10 @@ from numba.core import types
 from numba.core.caching import FunctionCache
 from numba.core.extending import intrinsic
 from numba.core.registry import CPUDispatcher
+from numba.core.serialize import dumps
 from numba.np.arrayobj import make_array, populate_array
 
+from .code_files import CodeFiles
 from .digest import PACKAGE
 from .messages import say_compiling, say_unwritable
 
@@ -112,23 +113,15 @@ class KernelCache(FunctionCache):  # type: ignore[misc]
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
-        # Numba numbers the data files of a function's signatures 1, 2, ... Two processes that
-        # compile different signatures at once would both write number 1, and the index could send
-        # one signature to the other's machine code. With a unique name for each file, the worst
-        # case is to compile twice.
-        stem = self._impl.filename_base
-        self._cache_file._data_name = lambda number: f"{stem}.{uuid4().hex[:16]}.nbc"
+        # Numba's own files have no checksum, and two processes that compile two signatures at the
+        # same time may write both to one file.
+        self._cache_file = CodeFiles(Path(self.cache_path), self._impl.filename_base, dumps)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Load the machine code for one signature; None if there is none that can be read."""
-        try:
+        with suppress(OSError):
             return super().load_overload(sig, target_context)
-        except (EOFError, UnpicklingError):  # a file was cut short, by a power failure, say
-            with suppress(OSError):
-                self.flush()
-            return None
-        except OSError:
-            return None
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Save the machine code for one signature, or go on without."""

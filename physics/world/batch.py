@@ -1,7 +1,6 @@
 """`WorldBatch`: copies of a world that are stepped together, by the kernel that steps one."""
 
 import itertools
-from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy.typing as npt
 
 from ..arguments import whole
 from ..body import FloatArray
+from ..kernels.threads import Threads
 from .records import Clock
 from .states import Stepper, checked_step, pack_states, unpack_states
 from .world import World
@@ -48,7 +48,8 @@ class WorldBatch:
         self._steppers = [
             Stepper(setup, self._states[start:stop]) for start, stop in itertools.pairwise(cuts)
         ]
-        self._pool = ThreadPoolExecutor(parts - 1, "arkanoid-worlds") if parts > 1 else None
+        self._threads = Threads("arkanoid-worlds")
+        self._closed = False
 
     def __len__(self) -> int:
         return len(self._states)
@@ -72,17 +73,14 @@ class WorldBatch:
         Raises:
             ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
                 large for a number.
+            RuntimeError: the batch has several threads and is closed.
         """
         length, count = checked_step(dt, steps)
-        if self._pool is None:
+        if len(self._steppers) == 1:
             return self._steppers[0].step(length, count)
-        running = [self._pool.submit(part.step, length, count) for part in self._steppers[1:]]
-        try:
-            first = self._steppers[0].step(length, count)
-        finally:
-            # All threads have finished when this returns, also if it raises.
-            wait(running)
-        parts = [first, *(task.result() for task in running)]
+        if self._closed:
+            raise RuntimeError("step() after the shutdown of the batch's threads by close()")
+        parts = self._threads.run(lambda part: part.step(length, count), self._steppers)
         for start, part in zip(self._starts, parts, strict=True):
             part["world"] += start
         return np.concatenate(parts)
@@ -101,8 +99,8 @@ class WorldBatch:
 
     def close(self) -> None:
         """End the threads, if there are any."""
-        if self._pool is not None:
-            self._pool.shutdown()
+        self._closed = True
+        self._threads.close()
 
     def _clocks(self) -> npt.NDArray[Any]:
         clocks: npt.NDArray[Any] = self._states[:, : Clock.itemsize].view(Clock)

@@ -227,7 +227,9 @@ def _append_around(world: WorldView, trait: TraitRecord, slot: int, least: int, 
     for row in range(max(0, plan.row - 1), min(header.rows, plan.row + 2)):
         for column in range(max(0, plan.column - 1), min(header.columns, plan.column + 2)):
             other = heads[row * header.columns + column]
-            while other != NO_ONE:
+            for _ in range(plans.shape[0]):  # a list is not longer
+                if other == NO_ONE:
+                    break
                 if other >= least and other != slot:
                     count = _append(world, trait, moving[other], count)
                 other = plans[other].next

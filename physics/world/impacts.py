@@ -25,7 +25,9 @@ from .view import (
 def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
     """Carry out all plans until the step ends, the earliest first; return how many hits there are.
 
-    It stops earlier if there is no room for more hits, and can be called again to continue.
+    It stops earlier if there is no room for more hits, and can be called again to continue. It
+    always ends: a body has no more hits than `max_hits`, and between two of them it crosses each
+    border and enters each sensor at most once.
     """
     progress = progress_of(world)
     plans = plans_of(world)

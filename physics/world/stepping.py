@@ -39,7 +39,7 @@ def step_worlds(
 
     If the buffer is full, it stops early and returns -1 - count. Call it again with a larger buffer
     that holds the same hits, and it continues. It returns `INVALID` if a position or velocity of a
-    world is not finite, or has become so.
+    world is not finite, or has become so, or its time.
 
     Args:
         states: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
@@ -87,6 +87,8 @@ def begin_step(world: WorldView, dt: float) -> bool:
     clock = clock_of(world)
     progress = progress_of(world)
     progress.end, progress.end_low = later(clock.time, clock.time_low, dt)
+    if not abs(progress.end) < math.inf:
+        return False
     progress.crowded = 0
     if clock.planned and _are_equal(motions_of(world), motions_after_step_of(world)):
         return True

@@ -16,7 +16,7 @@ def leaf_count(players: int) -> int:
 
 
 @kernel
-def _better(plans: Plans, one: int, other: int) -> int:
+def better(plans: Plans, one: int, other: int) -> int:
     """Return the slot whose plan comes first; the left one if the times are equal."""
     if other < 0:
         return one
@@ -34,7 +34,7 @@ def start_tournament(winners: Indices, plans: Plans) -> None:
     for slot in range(leaves):
         winners[leaves + slot] = slot if slot < plans.shape[0] else -1
     for node in range(leaves - 1, 0, -1):
-        winners[node] = _better(plans, winners[2 * node], winners[2 * node + 1])
+        winners[node] = better(plans, winners[2 * node], winners[2 * node + 1])
 
 
 @kernel
@@ -42,5 +42,5 @@ def replay(winners: Indices, plans: Plans, slot: int) -> None:
     """Play those games again in which a changed plan took part."""
     node = (winners.shape[0] // 2 + slot) // 2
     while node > 0:
-        winners[node] = _better(plans, winners[2 * node], winners[2 * node + 1])
+        winners[node] = better(plans, winners[2 * node], winners[2 * node + 1])
         node //= 2

@@ -92,6 +92,12 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
     }
 
 
+def test_a_config_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    path = tmp_path / "marked.toml"
+    path.write_text("seed = 7", encoding="utf-8-sig")
+    assert load_experiment(str(path)).seed == 7
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -100,7 +106,7 @@ def test_overrides_win_over_the_file(tmp_path: Path) -> None:
         ("[poo]\ngamma = 1.0", ["unknown key 'poo'"]),
         ("[training]\nworld = 3", ["'training.world'", "'training.worlds'", "an integer"]),
         ("sede = 3", ["'sede'", "'seed'", "an integer"]),
-        ("zzzzqq = 3", ["'zzzzqq'", "nearest known key"]),
+        ("zzzzqq = 3", ["'zzzzqq'", "known are name,", "ppo.learning_rate"]),
         ('[ppo]\nn_steps = "many"', ["'ppo.n_steps'", "an integer, at least 1", "'many'"]),
         ("[ppo]\nn_steps = 1.5", ["'ppo.n_steps'", "an integer", "1.5"]),
         ("[ppo]\nn_steps = true", ["'ppo.n_steps'", "an integer", "True"]),
@@ -163,12 +169,14 @@ def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(
     [
         ("ppo.learning_rat", "1", ["'ppo.learning_rat'", "'ppo.learning_rate'"]),
         ("worlds", "1", ["'worlds'", "'training.worlds'"]),
-        ("ppo", "1", ["unknown key 'ppo'"]),
+        ("ppo", "1", ["unknown key 'ppo'; known are ppo.learning_rate,"]),
         ("seed.x", "1", ["unknown key 'seed.x'"]),
         ("ppo.n_steps", "many", ["'ppo.n_steps'", "an integer, at least 1", "'many'"]),
         ("ppo.n_steps", "1\nseed = 2", ["'ppo.n_steps'", "an integer"]),
         ("ppo.batch_size", "1000", ["'ppo.batch_size' (1000)"]),
         ("env.lives", "none", ["lives must be an integer", "'none'"]),
+        # The nearest key, however far, was 'env_id'.
+        ("device", "cuda", ["unknown key 'device'; known are name,"]),
     ],
 )
 def test_a_wrong_override_is_blamed_on_the_command_line(

@@ -8,6 +8,7 @@ import io
 import json
 import os
 import pickle
+import random
 import shutil
 import struct
 import sys
@@ -333,6 +334,31 @@ def test_what_is_no_number_text_list_or_table_is_not_read(value: Any) -> None:
     torch.save(value, buffer)
     with pytest.raises(ValueError, match="more than numbers"):
         read_tensors(buffer.getvalue())
+
+
+def test_forged_programs_with_right_checksums_are_refused_or_harmless(run: RunFolder) -> None:
+    """Bytes are changed, removed and inserted; the only exception is ValueError."""
+    with zipfile.ZipFile(run.model) as archive, archive.open("policy.pth") as file:
+        inner = zipfile.ZipFile(io.BytesIO(file.read()))
+    entries = {name: inner.read(name) for name in inner.namelist()}
+    (program,) = (name for name in entries if name.endswith(".pkl"))
+    draw = random.Random(0)
+    outcomes: set[str] = set()
+    for _ in range(500):
+        changed = bytearray(entries[program])
+        place, length = draw.randrange(len(changed)), draw.randrange(4)
+        changed[place : place + draw.randrange(4)] = draw.randbytes(length)
+        forged = io.BytesIO()
+        with zipfile.ZipFile(forged, "w") as archive:
+            for name, content in {**entries, program: bytes(changed)}.items():
+                archive.writestr(name, content)
+        try:
+            read_tensors(forged.getvalue())
+        except ValueError:
+            outcomes.add("refused")
+        else:
+            outcomes.add("read")
+    assert outcomes == {"refused", "read"}
 
 
 def test_numbers_come_back_as_they_were() -> None:

@@ -5,6 +5,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
+from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
@@ -134,7 +135,7 @@ def test_a_finished_world_must_be_reset_in_disabled_mode():
     env = ArkanoidVectorEnv(2, autoreset_mode="Disabled", max_decisions=1)
     env.reset(seed=0)
     env.step(np.zeros(2, int))
-    with pytest.raises(RuntimeError, match="reset_mask"):
+    with pytest.raises(ResetNeeded, match="reset_mask"):
         env.step(np.zeros(2, int))
 
 

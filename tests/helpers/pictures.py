@@ -183,6 +183,8 @@ def random_scene(batch: Batch, random: np.random.Generator) -> None:
     if chance():
         world.score, world.lives = random.integers(0, 10**7), random.integers(0, 8)
     if chance():
+        world.idle, world.decisions = random.integers(0, 3601), random.integers(0, 27_001)
+    if chance():
         world.power = random.integers(0, POWERS + 1)
         world.paddle_shape = LONG_PADDLE_SHAPE if world.power == ENLARGE else PADDLE_SHAPE
         world.paddle_half = 1.5 if world.power == ENLARGE else 1.0

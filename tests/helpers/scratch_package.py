@@ -111,6 +111,6 @@ class Scratch:
         """Return the cache's folders, one for each digest."""
         return sorted((self.cache / "kernels").iterdir())
 
-    def data_files(self) -> set[str]:
-        """Return the names of the files of machine code."""
-        return {file.name for file in self.cache.rglob("*.nbc")}
+    def files(self) -> list[Path]:
+        """Return the cache's files."""
+        return sorted(file for file in self.cache.rglob("*") if file.is_file())

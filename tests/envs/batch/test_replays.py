@@ -17,6 +17,7 @@ from arkanoid.envs import (
 from arkanoid.envs.batch import replays
 from arkanoid.envs.batch.playback import replay_states
 from arkanoid.envs.batch.recorder import NOTE_EVERY
+from gymnasium.error import ResetNeeded
 from helpers.processes import INTERPRETED, run_program
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -97,8 +98,8 @@ def test_the_result_is_what_the_player_saw():
     assert (result.reward, result.decisions, result.terminated) == (total, steps, terminated)
     assert (result.score, result.lives, result.round) == (info["score"], 0, info["round"])
     assert recorder.finished is recorder.replay()
-    # What is played on, against all rules, does not count.
-    env.step(0)
+    with pytest.raises(ResetNeeded):
+        env.step(0)
     assert recorder.replay().result == result
 
 

@@ -1,6 +1,7 @@
 """Bricks in a picture: each fills its cell, and each kind is told from the others."""
 
 import hashlib
+import itertools
 
 import numpy as np
 import pytest
@@ -79,6 +80,16 @@ def test_all_kinds_of_bricks_differ_in_grey(size: tuple[int, int]) -> None:
         for other in pictures[index + 1 :]:
             # The colours differ by 20 in brightness, and by 0.82 times that at the lower edge.
             assert np.abs(one - other).max() >= 16
+
+
+def test_kinds_of_bricks_differ_in_small_grey_pictures() -> None:
+    """At 84 x 84, gold, orange and silver looked alike: their means were 3 and 9 of 255 apart."""
+    pictures = brick_pictures(84, 84)
+    means = np.sort([each.mean() for each in pictures])
+    assert np.diff(means).min() >= 10
+    metals, orange = pictures[SILVER - 1 :], pictures[1]
+    for one, other in itertools.combinations([*metals, orange], 2):
+        assert abs(one.mean() - other.mean()) >= 50
 
 
 @pytest.mark.parametrize("size", SIZES)

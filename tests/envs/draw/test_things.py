@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arkanoid.envs.draw.palette import CAPSULE_BODY, LUMA, PALETTE
+from arkanoid.envs.draw.palette import CAPSULE_BODY, DIMMING, LUMA, PALETTE
 from arkanoid.envs.draw.view import make_view
 from arkanoid.envs.game.shapes import (
     boss_collider,
@@ -53,6 +53,7 @@ from helpers.pictures import (
     put_paddle,
     put_power,
     put_shard,
+    random_scene,
     region_in_pixels,
     to_pixels,
     upright,
@@ -67,7 +68,7 @@ from shapely import Point, Polygon
 @given(
     size=st.sampled_from(SIZES),
     x=st.floats(0.2, FIELD_WIDTH - 0.2),
-    y=st.floats(0.2, FIELD_HEIGHT - 0.2),
+    y=st.floats(1.2, FIELD_HEIGHT - 0.2),
 )
 def test_a_ball_appears_where_it_is_and_nowhere_else(
     size: tuple[int, int], x: float, y: float
@@ -87,6 +88,27 @@ def test_a_ball_appears_where_it_is_and_nowhere_else(
     assert not mask[pixel_areas(centre.buffer(radius + 0.01), *size) == 0.0].any()
     # The disc's coverage may be wrong by 1 / 8; the ball is bright on the dark field.
     assert mask[pixel_areas(centre.buffer(radius), *size) > 0.2].all()
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+@pytest.mark.parametrize("size", [(84, 84), (60, 60), (42, 42), (84, 70), (120, 90)])
+def test_the_ball_is_the_brightest_thing_in_small_pictures(
+    size: tuple[int, int], channels: int
+) -> None:
+    """In grey and in each colour, wherever it is; it was the dimmest thing at 84 x 84."""
+    batch, random = new_game(), np.random.default_rng(size)
+    world, brightest = batch.worlds[0], 0
+    for _ in range(200):
+        random_scene(batch, random)
+        world.ball_state[:] = ABSENT
+        brightest = max(brightest, int(picture(batch, *size, channels).max()))
+        world.ball_state[1] = FLYING
+        world.ball_x[1] = random.uniform(BALL_RADIUS, FIELD_WIDTH - BALL_RADIUS)
+        world.ball_y[1] = random.uniform(1.2, FIELD_HEIGHT - BALL_RADIUS)
+        x, y = to_pixels(*size, world.ball_x[1], world.ball_y[1])
+        shown = picture(batch, *size, channels)[max(0, int(y) - 1) : int(y) + 2]
+        assert shown[:, max(0, int(x) - 1) : int(x) + 2].max(axis=(0, 1)).min() == 255
+    assert brightest <= 225
 
 
 # For each name: what puts the thing into a world, its region, and its x and y (None: any).
@@ -152,6 +174,8 @@ def test_a_thing_covers_the_pixels_of_its_collider_and_no_other(
     inner = pixel_areas(region_in_pixels(region.buffer(-0.05), *size, x, y), *size)
     edge = (covered > 0.1) & (inner < 0.5)
     darkest, brightest = own_colours(name, channels)
+    if size == (84, 84):
+        darkest, brightest = DIMMING * darkest, DIMMING * brightest
     before = without.reshape(*size, channels).astype(np.int64)
     differ = np.maximum(darkest - before, before - brightest).max(axis=2)
     assert mask[edge & (covered * differ >= 2)].all()

@@ -12,6 +12,7 @@ from arkanoid.envs.rules import (
     BALL_SPEED,
     CAPSULES,
     ENEMY_KINDS,
+    ENLARGE,
     FIELD_HEIGHT,
     FIELD_WIDTH,
     IDLE_TICKS,
@@ -41,7 +42,7 @@ def random_keywords(rng):
         "capsule_rate": float(rng.choice([0.12, 1.0])),
         "enemies": bool(rng.random() < 0.8),
         "speed": float(rng.choice([0.3, 1.0, 2.0, 5.0, 50.0])),
-        "paddle": float(rng.choice([0.25, 1.0, 2.0, 3.5])),
+        "paddle": float(rng.choice([0.25, 1.0, 2.0, 3.5, 3.7, 5.0])),
         "max_decisions": int(rng.choice([300, 27_000])),
     }
     keywords = {k: str(v) if isinstance(v, np.str_) else v for k, v in keywords.items()}
@@ -53,10 +54,7 @@ def random_keywords(rng):
 def check(env, observations, rewards):
     """Assert what holds in every state of every game."""
     worlds = env.state
-    low, high = env.single_observation_space.low[0], env.single_observation_space.high[0]
-    assert np.isfinite(observations).all()
-    assert (observations >= low).all()
-    assert (observations <= high).all()
+    assert env.observation_space.contains(observations)
     assert np.isfinite(rewards).all()
     in_play = worlds["ball_state"] > 0
     x, y = worlds["ball_x"][in_play], worlds["ball_y"][in_play]
@@ -134,6 +132,48 @@ def fuzz(seed, games, worlds, steps):
                     place_capsules(writable_states(env), caught, int(rng.integers(1, CAPSULES + 1)))
         ticks += worlds * steps * keywords["frame_skip"]
     return ticks
+
+
+VIEWS = [
+    {"observation": "vector"},
+    {"observation": "grid"},
+    {"observation": "rgb", "size": 20, "grey": True, "stack": 2},
+    {"observation": "dict", "size": (9, 31), "channels": "last"},
+]
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("view", VIEWS, ids=[view["observation"] for view in VIEWS])
+def test_every_observation_lies_in_its_space(view, seed):
+    """In games of any kind, at every step.
+
+    A paddle 11/3 times as wide and wider was enlarged beyond the field: it could not move, was
+    drawn through the walls, and had a width of 1.36 in observations.
+    """
+    rng = np.random.default_rng(seed)
+    for _ in range(3):
+        keywords = random_keywords(rng) | view
+        env = ArkanoidVectorEnv(3, autoreset_mode="SameStep", copy=False, **keywords)
+        observations, _ = env.reset(seed=int(rng.integers(1 << 30)))
+        env.action_space.seed(int(rng.integers(1 << 30)))
+        for step in range(150):
+            assert env.observation_space.contains(observations)
+            if step % 30 == 10 and env.config.capsules:
+                kind = ENLARGE if step == 10 else int(rng.integers(1, CAPSULES + 1))
+                place_capsules(writable_states(env), env.state["capsule"] == 0, kind)
+            observations, *_ = env.step(env.action_space.sample())
+
+
+@pytest.mark.parametrize("paddle", [11 / 3, 3.7, 5.0])
+def test_the_widest_paddle_fills_the_field(paddle):
+    env = ArkanoidVectorEnv(1, paddle=paddle, frame_skip=1)
+    env.reset(seed=0)
+    place_capsules(writable_states(env), np.ones(1, bool), ENLARGE)
+    for _ in range(30):
+        observations, *_ = env.step(np.array([2]))
+    world = env.state[0]
+    assert (world["power"], world["paddle_half"], world["paddle_x"]) == (ENLARGE, 5.5, 5.5)
+    assert observations[0, :3].tolist() == [0.0, 1.0, 0.0]
 
 
 def place_capsules(worlds, mask, kind):

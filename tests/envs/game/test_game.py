@@ -222,15 +222,35 @@ def test_silver_takes_two_hits_and_gold_none(tmp_path):
 
 
 def test_extra_lives():
+    """They came at 20 000, 80 000, 140 000 and so on: 60 000 after the first."""
     env, world = make()
-    for score, lives in [(19_990, 4), (59_990, 4), (79_990, 5), (139_990, 6)]:
+    gains = [(19_990, 4), (59_940, 4), (59_990, 5), (79_990, 5), (119_990, 6), (179_990, 7)]
+    for score, lives in gains:
         world.score = score
+        world.kind[0] = 1  # 50 points
         world.brick_hits[:] = 0
         world.brick_hits[0] = 1
         world.brick_hits[-1] = 1
         fly(world, 0.5, 12.5 - BALL_RADIUS, 0.0, BALL_SPEED)
         env.step(NOOP)
         assert world.lives == lives
+
+
+@pytest.mark.parametrize(
+    ("score", "thresholds"), [(59_000, 1), (60_000, 2), (250_000, 5), (2_999_990, 50)]
+)
+def test_points_that_pass_several_thresholds_give_a_life_for_each(score, thresholds):
+    """At 20 000, and at every multiple of 60 000."""
+    env, world = make()
+    world.score = score - 50
+    world.brick_hits[:] = 0
+    world.brick_hits[[0, -1]] = 1
+    world.kind[0] = 1
+    fly(world, 0.5, 12.5 - BALL_RADIUS, 0.0, BALL_SPEED)
+    env.step(NOOP)
+    assert world.score == score
+    assert world.lives == 3 + thresholds
+    assert world.next_life == (score // 60_000 + 1) * 60_000
 
 
 def test_losing_balls_ends_the_game_and_keeps_the_bricks():

@@ -111,6 +111,12 @@ def test_a_level_file_of_ones_own(tmp_path):
         load_level(str(file))
 
 
+def test_a_level_file_may_begin_with_a_byte_order_mark(tmp_path):
+    file = tmp_path / "marked.txt"
+    file.write_text(GOOD, encoding="utf-8-sig")
+    assert load_level(str(file)).name == "Tiny"
+
+
 def test_a_missing_level_names_those_there_are():
     with pytest.raises(ValueError, match=r"neither a file nor one of .*ripple"):
         load_level("no-such-level")

@@ -1,5 +1,8 @@
 """The digest: after any edit, nothing runs stale machine code."""
 
+import os
+import time
+
 import pytest
 from helpers.scratch_package import Scratch
 
@@ -61,6 +64,40 @@ report(shifted(10.0))
 """)
     assert during.result == 21.0
     assert scratch.run().result == 121.0
+
+
+def test_reload_of_an_edited_source_is_not_lost(scratch: Scratch) -> None:
+    """A reloaded module's kernels ran the machine code of the module as it was before the edit."""
+    scratch.run()
+    during = scratch.run("""
+import importlib, pathlib
+from arkanoid.physics import callee, numbers
+file = pathlib.Path(numbers.__file__)
+file.write_text("FACTOR = 30.0")
+importlib.reload(numbers)
+report(importlib.reload(callee).scaled(10.0))
+""")
+    assert during.result == 300.0
+    assert scratch.run().result == 301.0
+
+
+def test_a_source_may_be_dated_in_the_future(scratch: Scratch) -> None:
+    """Where a clock had been set back, every process compiled again, without a word."""
+    tomorrow = time.time() + 86_400
+    for file in scratch.code.rglob("*.py"):
+        os.utime(file, (tomorrow, tomorrow))
+    assert scratch.run().compiled != []
+    assert scratch.run().compiled == []
+
+
+@pytest.mark.parametrize("name", ["cache", "code_files", "messages", "sealed"])
+def test_edit_of_what_has_no_influence_recompiles_nothing(scratch: Scratch, name: str) -> None:
+    """A new wording of a message made every user wait for the compiler."""
+    scratch.run()
+    scratch.replace(
+        f"arkanoid/physics/kernels/{name}.py", '"""\n\nimport', '"""\n\n# edited\nimport'
+    )
+    assert scratch.run().compiled == []
 
 
 def test_edit_recompiles_only_what_can_depend_on_it(scratch: Scratch) -> None:

@@ -1,0 +1,262 @@
+"""Environments that are used wrongly: the mistake is named, and nothing goes on behind it."""
+
+import threading
+
+import arkanoid  # noqa: F401
+import gymnasium as gym
+import numpy as np
+import pytest
+from arkanoid.agents.adapter import GymnasiumVecEnv
+from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
+from gymnasium.error import ResetNeeded
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from helpers.processes import run_program
+
+MODES = list(AutoresetMode)
+# Capsules, lost lives and ends of episodes are frequent.
+LIVELY = {"capsule_rate": 1.0, "lives": 1, "max_decisions": 40, "levels": "seeds:0-99"}
+
+
+def threads_of_worlds():
+    return [each for each in threading.enumerate() if each.name.startswith("arkanoid")]
+
+
+# Before the first reset.
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_worlds_are_not_stepped_before_their_reset(mode):
+    """The generator's state was 0: rewards were NaN, and drawing a capsule never ended."""
+    env = ArkanoidVectorEnv(3, autoreset_mode=mode, **LIVELY)
+    actions = np.zeros(3, int)
+    with pytest.raises(ResetNeeded, match=r"reset\(\).*\[0, 1, 2\]"):
+        env.step(actions)
+    env.reset(seed=0, options={"reset_mask": np.array([True, False, True])})
+    with pytest.raises(ResetNeeded, match=r"\[1\]"):
+        env.step(actions)
+    env.reset(options={"reset_mask": np.array([False, True, False])})
+    assert np.isfinite(env.step(actions)[1]).all()
+
+
+def test_one_game_is_not_stepped_before_its_reset():
+    env = ArkanoidEnv()
+    with pytest.raises(ResetNeeded, match=r"reset\(\)"):
+        env.step(0)
+    with pytest.raises(ResetNeeded):
+        env.clone().step(0)
+    with pytest.raises(ResetNeeded):
+        gym.make("Arkanoid-v0").step(0)
+    other = ArkanoidEnv()
+    other.reset(seed=0)
+    env.restore(other.snapshot())
+    assert env.step(3)[0].tobytes() == other.step(3)[0].tobytes()
+
+
+@pytest.mark.parametrize("native", [True, False])
+def test_the_adapter_is_not_stepped_before_its_reset(native):
+    if native:
+        env = ArkanoidVectorEnv(2, autoreset_mode="SameStep")
+    else:
+        env = SyncVectorEnv([ArkanoidEnv] * 2, autoreset_mode=AutoresetMode.SAME_STEP)
+    worlds = GymnasiumVecEnv(env)
+    with pytest.raises(ResetNeeded):
+        worlds.step(np.zeros(2, int))
+    worlds.reset()
+    worlds.step(np.zeros(2, int))
+
+
+def test_no_loop_waits_for_a_healthy_generator_or_a_free_place():
+    """With a generator that always gives 0 a capsule was drawn forever, deaf to Ctrl-C."""
+    run_program(
+        """
+import numpy as np
+from arkanoid.envs.batch.batch import Autoreset, Batch
+from arkanoid.envs.config import Config
+
+everywhere = np.ones(4, np.bool_)
+for levels in ("seeds:0-99", "warden"):
+    batch = Batch(4, Config(capsule_rate=1.0, speed=3.0, levels=levels), Autoreset.SAME_STEP)
+    batch.reset(everywhere, seeds=range(4))
+    generator = np.random.default_rng(0)
+    for step in range(1500):
+        batch.worlds["random"] = 0
+        if step % 10 == 0:
+            # The counters say that there is room, and there is none.
+            for things in ("beam", "shard", "enemy"):
+                batch.worlds[f"{things}_state"] = 2
+            batch.worlds["beams"] = batch.worlds["shards"] = batch.worlds["enemies"] = 0
+            batch.worlds["shard_wait"] = batch.worlds["enemy_wait"] = 1
+            batch.worlds["power"] = 3
+            batch.commands[:, 1] = 1.0
+        batch.commands[:, 0] = generator.uniform(-1.0, 1.0, 4)
+        batch.step()
+        assert np.isfinite(batch.outcomes["reward"]).all()
+""",
+        timeout=120.0,
+    )
+
+
+# After the end.
+
+
+def play_to_the_end(env):
+    env.reset(seed=0)
+    over = False
+    while not over:
+        _, _, terminated, truncated, _ = env.step(1)
+        over = terminated or truncated
+
+
+@pytest.mark.parametrize("rules", [{"lives": 1}, {"max_decisions": 30}, {"episodic_life": True}])
+def test_a_game_that_is_over_does_not_go_on(rules):
+    """It went on and paid, and its clock left the observation's space."""
+    env = ArkanoidEnv(**rules)
+    play_to_the_end(env)
+    before = env.snapshot()
+    copied, restored = env.clone(), ArkanoidEnv(**rules)
+    restored.restore(before)
+    for each in (env, copied, restored):
+        for _ in range(2):
+            with pytest.raises(ResetNeeded, match="episode is over"):
+                each.step(1)
+        assert each.snapshot() == before
+        observation, _ = each.reset()
+        assert each.observation_space.contains(observation)
+        each.step(1)
+
+
+def test_without_autoreset_finished_worlds_must_be_reset():
+    native = ArkanoidVectorEnv(2, autoreset_mode="Disabled", max_decisions=3)
+    # Gymnasium's own asserts.
+    makers = [lambda: ArkanoidEnv(max_decisions=3)] * 2
+    sync = SyncVectorEnv(makers, autoreset_mode=AutoresetMode.DISABLED)
+    for env, error in ((native, ResetNeeded), (sync, AssertionError)):
+        env.reset(seed=0)
+        actions = np.zeros(2, int)
+        for _ in range(3):
+            env.step(actions)
+        with pytest.raises(error):
+            env.step(actions)
+        env.reset(options={"reset_mask": np.array([True, False])})
+        with pytest.raises(error):
+            env.step(actions)
+        env.reset(options={"reset_mask": np.array([False, True])})
+        env.step(actions)
+
+
+# Closing, and threads.
+
+
+def test_closing_again_ends_the_threads_of_a_later_step():
+    """Gymnasium closes an environment once: threads of a step after that stayed."""
+    before = threads_of_worlds()
+    env = ArkanoidVectorEnv(4, threads=2)
+    env.reset(seed=0)
+    for _ in range(3):
+        env.step(np.zeros(4, int))
+        assert len(threads_of_worlds()) > len(before)
+        env.close()
+        assert threads_of_worlds() == before
+
+
+def test_a_forked_process_steps_with_threads_of_its_own():
+    """The child waited forever for threads that only its parent had."""
+    run_program(
+        """
+import multiprocessing
+import numpy as np
+from arkanoid.physics import Body, Particle, World, WorldBatch
+from arkanoid.envs import ArkanoidVectorEnv
+
+env = ArkanoidVectorEnv(8, threads=3)
+env.reset(seed=0)
+world = World([Body(Particle(1.0), (0.0, 0.0), (1.0, 0.0), mass=1.0)])
+batch = WorldBatch(world, 4, threads=2)
+
+def step():
+    for _ in range(5):
+        observations = env.step(np.full(8, 3))[0]
+        batch.step(0.5)
+    return observations.tobytes() + batch.positions.tobytes()
+
+def step_and_close(connection):
+    connection.send_bytes(step())
+    env.close()
+    batch.close()
+
+step()
+context = multiprocessing.get_context("fork")
+theirs, ours = context.Pipe()
+child = context.Process(target=step_and_close, args=(ours,))
+child.start()
+assert theirs.poll(60), "the child does not answer"
+assert theirs.recv_bytes() == step()
+child.join(60)
+assert child.exitcode == 0
+env.close()
+batch.close()
+""",
+        warnings="default",
+        timeout=200.0,
+    )
+
+
+class Meddler:
+    """Calls functions in another thread while a step runs, and keeps the errors."""
+
+    def __init__(self, *calls):
+        self.calls = calls
+        self.errors = []
+
+    def step(self):
+        for call in self.calls:
+            thread = threading.Thread(target=self._try, args=(call,))
+            thread.start()
+            thread.join()
+
+    def _try(self, call):
+        try:
+            call()
+        except RuntimeError as error:
+            self.errors.append(str(error))
+
+
+@pytest.mark.parametrize("count", [None, 2])
+def test_a_second_thread_is_refused_while_a_step_runs(count):
+    if count is None:
+        env, actions = ArkanoidEnv(), 3
+    else:
+        env, actions = ArkanoidVectorEnv(count), np.full(count, 3)
+    env.reset(seed=0)
+    snapshot = env.snapshot()
+    calls = (
+        lambda: env.step(actions),
+        env.reset,
+        env.snapshot,
+        lambda: env.restore(snapshot),
+    )
+    meddler = Meddler(*calls)
+    env._batch.listeners.add(meddler)
+    seen = env.step(actions)[0]
+    assert len(meddler.errors) == len(calls)
+    assert all("one thread at a time" in error for error in meddler.errors)
+    env._batch.listeners.remove(meddler)
+    env.restore(snapshot)
+    assert env.step(actions)[0].tobytes() == seen.tobytes()
+
+
+# Recorders.
+
+
+def test_replaced_recorders_do_not_pile_up():
+    """One per episode stayed, and each of them recorded all the rest."""
+    env = ArkanoidEnv(max_decisions=20)
+    for episode in range(30):
+        recorder = env.record()
+        env.reset(seed=episode)
+        for _ in range(20):
+            env.step(episode % 6)
+        assert recorder.finished.result.decisions == 20
+    assert list(env._batch.listeners) == [recorder]
+    del recorder
+    assert len(env._batch.listeners) == 0
