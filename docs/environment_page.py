@@ -125,6 +125,11 @@ def part_table(parts: tuple[Part, ...]) -> str:
     return table(("part", "slice", "meaning"), rows)
 
 
+def pay_parts(parts: tuple[Part, ...]) -> str:
+    """Return the parts that only games with the score as reward have."""
+    return "; ".join(f"`{part.name}` ({part.length}), {part.meaning}" for part in parts)
+
+
 def status_table() -> str:
     """Return the table of the status in small pictures."""
     rows = (
@@ -217,6 +222,8 @@ the ceiling. Numbers of things that are not there are 0.
 
 {part_table(vector.CORE_PARTS + vector.EXTRA_PARTS)}
 
+With `reward="score"`, two parts follow, which say what pays: {pay_parts(vector.PAY_PARTS)}.
+
 ### `grid`
 
 A cell is as large as a brick, 1 by 1/2. Row 0 lies under the ceiling, the lattice of bricks is rows
@@ -227,6 +234,9 @@ shared in the same way. Where things share a cell, their numbers are added and c
 {part_table(planes.CORE_PARTS + planes.EXTRA_PARTS)}
 
 The rows of `status`, from the top: {", ".join(f"`{name}`" for name in planes.STATUS)}.
+
+With `reward="score"`, a plane follows: {pay_parts(planes.PAY_PARTS)}. The row `next_life` has the
+points to the next life / {rules.EXTRA_LIFE_EVERY}; with other rewards it is 0.
 
 ### `rgb`
 
@@ -255,6 +265,25 @@ each under its name.
 
 `life_penalty` is taken off for each lost life. Nothing is paid for touching the ball or for staying
 alive.
+
+A round is cleared when its last breakable brick is broken and the boss, if there is one, is beaten.
+It is also cleared when the paddle leaves through the gate that the capsule *break* opens: then
+`'progress'` and `'sparse'` pay 1 for it, however many bricks still stand.
+
+## Points
+
+- Coloured bricks: {rules.COLOUR_POINTS[0]} to {rules.COLOUR_POINTS[-1]} points each (see
+  [levels](levels.md#level-files)).
+- Silver: {rules.SILVER_POINTS} times the round's number, when it breaks.
+- A caught capsule: {rules.CAPSULE_POINTS:,}. A destroyed enemy: {rules.ENEMY_POINTS}.
+- Each hit on the boss: {rules.BOSS_POINTS:,}.
+- The way through the gate: {rules.BREAK_POINTS:,}.
+
+The player gains a life at {rules.EXTRA_LIFE_FIRST:,} points and at every multiple of
+{rules.EXTRA_LIFE_EVERY:,}.
+
+The powers *catch*, *enlarge* and *laser* replace each other. A power survives a cleared round; a
+lost life ends it.
 
 ## Starting State
 

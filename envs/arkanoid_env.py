@@ -176,8 +176,9 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
 
         Raises:
             TypeError: it is not bytes.
-            ValueError: it is corrupt, of another version, configuration or other levels, or has
-                several worlds; the environment is as it was then.
+            ValueError: it is corrupt, of another version, configuration or other levels, has
+                several worlds, or is of a state to which no play leads (the message names the
+                field); the environment is as it was then.
         """
         restore_snapshot(self._batch, snapshot)
         self._show()

@@ -49,7 +49,7 @@ _MODES = {
     AutoresetMode.NEXT_STEP: Autoreset.NEXT_STEP,
     AutoresetMode.SAME_STEP: Autoreset.SAME_STEP,
 }
-MOST_WORLDS = 1 << 30
+MOST_WORLDS = 1 << 40  # more than any memory holds
 
 
 class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], Any]):
@@ -282,8 +282,9 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         Raises:
             TypeError: it is not bytes.
             ValueError: it is corrupt, of another version, configuration, number of worlds or other
-                levels, or has an episode that is over where this environment would have begun the
-                next; the environment is as it was then.
+                levels, of a state to which no play leads (the message names the field), or has an
+                episode that is over where this environment would have begun the next; the
+                environment is as it was then.
         """
         restore_snapshot(self._batch, snapshot)
         return self._observations(), self._infos(self._batch.outcomes, self._everywhere)

@@ -44,7 +44,7 @@ ORDER = {
         draw
         game
         levels
-        config state actions checks hints rules ranges
+        config state actions checks hints rules ranges atomic
     """,
     "agents": """
         cli

@@ -5,8 +5,8 @@ import os
 import sys
 from pathlib import Path
 
+from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import write_atomically
 
 _EPILOG = """\
 LEVEL is a named round, the path of a level file, or seed:N for a generated level.

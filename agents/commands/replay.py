@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import write_atomically
 from ..show.film import RATES, write_film
 
 if TYPE_CHECKING:

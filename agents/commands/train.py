@@ -4,8 +4,9 @@ import argparse
 import json
 from collections.abc import Iterator
 
+from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import quoted, write_atomically
+from ..experiment.files import quoted
 from ..experiment.reading import describe_settings, packaged_configs
 from ..experiment.runs import ModelFile, RunFolder
 from ..experiment.settings import Experiment, load_experiment

@@ -12,9 +12,10 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from ...envs.atomic import remove_unfinished, write_atomically
 from .. import pretrained
 from .errors import SettingsError
-from .files import cause, read_limited, remove_unfinished, write_atomically
+from .files import cause, read_limited
 from .provenance import describe_origin
 from .reading import read_toml, to_toml
 from .settings import Experiment, load_experiment

@@ -16,9 +16,10 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
 
+from ...envs.atomic import write_atomically
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, quoted, write_atomically
+from ..experiment.files import cause, quoted
 from ..experiment.worlds import native
 from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
 from .curves import is_number

@@ -4,8 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, read_limited, write_atomically
+from ..experiment.files import cause, read_limited
 
 STEP = "timesteps"
 # Some five hundred bytes a line, and a line for each rollout.

@@ -16,8 +16,8 @@ from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
 from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import VecEnv
 
+from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import write_atomically
 from ..experiment.provenance import memory_gib
 from ..experiment.runs import ModelFile
 from ..experiment.settings import Experiment, Ppo

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...envs.atomic import replace_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import replace_atomically
 
 Picture = NDArray[np.uint8]  # [height, width, 3]
 

@@ -15,7 +15,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
 from markupsafe import Markup
 
-from ..experiment.files import write_atomically
+from ...envs.atomic import write_atomically
 
 _KINDS = {".png": "image/png", ".gif": "image/gif"}
 # What has a meaning inside a line of Markdown; underscores inside a word have none.

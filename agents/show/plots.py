@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..experiment.files import write_atomically
+from ...envs.atomic import write_atomically
 from ..experiment.settings import Experiment
 from ..learn.curves import STEP
 from ..measure.comparison import COLUMNS, Comparison, Results, level_interval, summarise

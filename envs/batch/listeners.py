@@ -25,13 +25,16 @@ class Listeners:
     """The listeners of a batch, each as long as somebody else keeps it.
 
     So a recorder that nobody needs any more is gone, even if nobody has stopped it.
+
+    Attributes:
+        references: to the listeners, some of which may be gone.
     """
 
     def __init__(self) -> None:
-        self._references: list[weakref.ref[Listener]] = []
+        self.references: list[weakref.ref[Listener]] = []
 
     def __iter__(self) -> Iterator[Listener]:
-        for reference in self._references:
+        for reference in self.references:
             listener = reference()
             if listener is not None:
                 yield listener
@@ -41,8 +44,8 @@ class Listeners:
 
     def add(self, listener: Listener) -> None:
         """Add a listener."""
-        self._references = [weakref.ref(each) for each in (*self, listener)]
+        self.references = [weakref.ref(each) for each in (*self, listener)]
 
     def remove(self, listener: Listener) -> None:
         """Remove a listener, if it is there."""
-        self._references = [weakref.ref(each) for each in self if each is not listener]
+        self.references = [weakref.ref(each) for each in self if each is not listener]

@@ -1,6 +1,8 @@
 """Recording games: the commands given to one world of a batch, and checksums of its states."""
 
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -64,7 +66,9 @@ class Recorder:
     """Records the games of one world of a batch, each from its beginning.
 
     A game that has already begun is recorded only if it was just reset. A restored state ends the
-    recording until the next game begins. It records as long as somebody keeps it, or until `stop`.
+    recording until the next game begins, and so does a step that was interrupted, by Ctrl-C for
+    instance: whether the world has played it, nobody knows. It records as long as somebody keeps
+    it, or until `stop`.
 
     Args:
         batch: of the world.
@@ -84,6 +88,7 @@ class Recorder:
         self._world = world
         self._command = batch.commands[world]
         self._checked = np.zeros((), _Checked)
+        self._changes = batch.changes
         self._recording = False
         self._over = False
         self._start: GameStart
@@ -109,12 +114,15 @@ class Recorder:
         """Return the game so far; after its end, the whole game until the next one begins.
 
         Raises:
-            RuntimeError: it has not been recorded from its beginning.
+            RuntimeError: it has not been recorded from its beginning, or a step was interrupted.
         """
-        if not self._recording:
-            raise RuntimeError("no game is recorded: a recording begins when the world is reset")
-        if self._over and self.finished is not None:
+        if self._recording and self._over and self.finished is not None:
             return self.finished
+        if not self._recording or self._batch.changes != self._changes:
+            raise RuntimeError(
+                "no game is recorded: a recording begins when the world is reset, and ends when a "
+                "step is interrupted"
+            )
         return self._replay(self._batch.outcomes[self._world])
 
     def stop(self) -> None:
@@ -123,8 +131,9 @@ class Recorder:
 
     def reset(self, mask: NDArray[np.bool_]) -> None:
         """Follow a reset of the worlds of a mask: to a new game, or to a game's next life."""
-        if mask[self._world] and self._batch.worlds["decisions"][self._world] == 0:
-            self._begin()
+        with self._following():
+            if mask[self._world] and self._batch.worlds["decisions"][self._world] == 0:
+                self._begin()
 
     def _begin(self) -> None:
         """Begin to record a game."""
@@ -137,12 +146,27 @@ class Recorder:
         self._checksums = []
         self._check(0)
 
+    @contextmanager
+    def _following(self) -> Iterator[None]:
+        """Follow a change of the worlds, unless one before has been interrupted, or this one is."""
+        changes = self._batch.changes
+        if changes != self._changes + 1:
+            self._recording = False
+        yield
+        # Ctrl-C may come at any time. Unless all is noted, this is not reached.
+        self._changes = changes
+
     def interrupt(self) -> None:
         """Stop, because the world was brought into another state."""
-        self._recording = False
+        with self._following():
+            self._recording = False
 
     def step(self) -> None:
         """Follow a step."""
+        with self._following():
+            self._follow_step()
+
+    def _follow_step(self) -> None:
         batch, index = self._batch, self._world
         outcome = batch.outcomes[index]
         decisions = batch.worlds["decisions"][index]

@@ -12,6 +12,7 @@ random generator when the game began, and the player's command in each decision.
 """
 
 import json
+import re
 import struct
 import zlib
 from dataclasses import asdict, dataclass
@@ -24,9 +25,10 @@ from numpy.typing import NDArray
 
 from ...physics.kernels.sealed import seal, unseal
 from ...version import __version__
+from ..atomic import write_atomically
 from ..config import Config
 from ..levels.generator import MAX_SEED
-from ..levels.plan import LevelPlan
+from ..levels.plan import LevelPlan, check_layouts
 from ..levels.starts import MAX_ROUND
 from ..rules import BRICK_LETTERS, CELLS, RULES_VERSION, TICKS_PER_SECOND
 from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, LevelEntry
@@ -35,6 +37,15 @@ _MARK = b"ARKAPLAY"
 _FORMAT = 1
 _LENGTH = struct.Struct("<I")
 _MOST_COLOURS = 256  # of the palette of commands
+# Files may come from anyone: what they expand to has bounds.
+MOST_DECISIONS = 10_000_000  # a week of play, without a pause
+_MOST_TEXT = 1 << 24  # bytes of JSON
+_VERSION = re.compile(r"[0-9A-Za-z.+!-]{1,64}")
+# What reading raises where a file holds something else.
+_ERRORS = (
+    *(ArithmeticError, AttributeError, LookupError, RecursionError, TypeError),
+    *(struct.error, zlib.error),
+)
 
 # How a game began: these fields of `World` say it.
 _START_FIELDS = ("start", "start_round", "start_seed", "start_difficulty", "start_boss")
@@ -117,8 +128,13 @@ class Replay:
         return TICKS_PER_SECOND / self.config.frame_skip
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write a file, replacing one of the same name."""
-        Path(path).write_bytes(self.to_bytes())
+        """Write a file, replacing one of the same name: all of it, or the old one stays.
+
+        Raises:
+            OSError: it can't be written.
+            ValueError: the game is too long, see `MOST_DECISIONS`.
+        """
+        write_atomically(Path(path), self.to_bytes())
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> "Replay":
@@ -135,7 +151,12 @@ class Replay:
             raise ValueError(f"{path}: {error}") from error
 
     def to_bytes(self) -> bytes:
-        """Return what a file holds."""
+        """Return what a file holds.
+
+        Raises:
+            ValueError: the game is too long, see `MOST_DECISIONS`.
+        """
+        _check_length(len(self.commands))
         palette, commands = _pack_commands(self.commands)
         head = {
             "version": self.version,
@@ -159,22 +180,35 @@ class Replay:
             ValueError: as `load`.
         """
         content = unseal("replay", _MARK, _FORMAT, data)
+        try:
+            return cls._read(content)
+        except _ERRORS as error:
+            raise ValueError("the replay is corrupt: it lacks what a replay holds") from error
+
+    @classmethod
+    def _read(cls, content: memoryview) -> "Replay":
+        """Return the replay of a content; raise ValueError or one of `_ERRORS` if it is none."""
         (length,) = _LENGTH.unpack_from(content)
-        head = json.loads(zlib.decompress(content[_LENGTH.size :][:length]))
+        text = content[_LENGTH.size :]
+        head = json.loads(_expand(text[:length], _MOST_TEXT))
+        if not _VERSION.fullmatch(head["version"]) or type(head["rules"]) is not int:
+            raise ValueError("the replay is corrupt: it does not say which release recorded it")
         if head["rules"] != RULES_VERSION:
             raise ValueError(
                 f"the replay is of the rules' version {head['rules']}, recorded with release "
                 f"{head['version']}, and this release ({__version__}) plays version "
                 f"{RULES_VERSION}: play it with the release that recorded it"
             )
-        commands = zlib.decompress(content[_LENGTH.size + length :])
+        result = Result(**head["result"])
+        _check_length(result.decisions)
+        size = result.decisions * (16 if head["palette"] is None else 1)
         replay = cls(
             config=Config.from_keywords(head["config"]),
             plan=_read_plan(head["levels"]),
             start=GameStart(**head["start"]),
-            commands=_unpack_commands(head["palette"], commands),
+            commands=_unpack_commands(head["palette"], _expand(text[length:], size)),
             checksums=tuple(head["checksums"]),
-            result=Result(**head["result"]),
+            result=result,
             version=head["version"],
         )
         replay._check()
@@ -187,18 +221,53 @@ class Replay:
         if illegal.any():
             decision = int(illegal.argmax())
             raise ValueError(f"the command {self.commands[decision]} is illegal")
-        fields, seeds = self.start.fields, self.plan.seeds
+        fields, plan = self.start.fields, self.plan
+        numbers = [
+            self.start.random,
+            *fields.values(),
+            *self.checksums,
+            *vars(self.result).values(),
+        ]
+        if not all(type(number) in (int, float, bool) for number in numbers):
+            raise ValueError("the replay is corrupt: it has something else in place of a number")
         if tuple(fields) != _START_FIELDS or not (
             0 < self.start.random < 1 << 64
             and fields["start"] in (AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED)
             and 1 <= fields["start_round"] <= MAX_ROUND
             and 0 <= fields["start_seed"] <= MAX_SEED
-            and -1.0 <= fields["start_difficulty"] <= 1.0
+            and (0.0 <= fields["start_difficulty"] <= 1.0 or fields["start_difficulty"] == -1.0)
             and fields["start_boss"] in (0, 1)
         ):
             raise ValueError(f"no game begins like this: {self.start}")
-        if not (0 <= seeds.start < seeds.stop <= MAX_SEED + 1 and len(self.plan.table)):
+        layout = np.array([_kinds(self.start.layout)], np.uint8)
+        if fields["start"] == GIVEN_LAYOUT:
+            check_layouts(layout, np.array([fields["start_boss"] == 1]), self.config.enemies)
+        if not (
+            0 <= plan.seeds.start < plan.seeds.stop <= MAX_SEED + 1
+            and len(plan.table) == max(1, len(plan.names))
+            and type(plan.endless) is bool
+            and 0.0 <= plan.first_difficulty <= 1.0
+        ):
             raise ValueError("no game has such levels")
+        if plan.names:
+            check_layouts(plan.table["kind"], plan.table["boss"], self.config.enemies)
+        if len(self.commands) != self.result.decisions:
+            raise ValueError("the replay is corrupt: its commands are not those of its decisions")
+
+
+def _check_length(decisions: int) -> None:
+    """Raise a ValueError if a file can't hold so many decisions."""
+    if type(decisions) is not int or not 0 <= decisions <= MOST_DECISIONS:
+        raise ValueError(f"a replay has at most {MOST_DECISIONS:,} decisions; got {decisions!r}")
+
+
+def _expand(packed: memoryview, most: int) -> bytes:
+    """Return what was compressed; raise a ValueError if it is more than so many bytes."""
+    expander = zlib.decompressobj()
+    content = expander.decompress(packed, most + 1)
+    if len(content) > most or not expander.eof or expander.unused_data:
+        raise ValueError(f"the replay is corrupt: a part of it has not its {most:,} bytes or less")
+    return content
 
 
 def _compress(commands: bytes) -> bytes:
@@ -214,6 +283,8 @@ def _letters(kinds: NDArray[np.uint8]) -> str:
 
 def _kinds(letters: str) -> list[int]:
     """Return the layout that `_letters` wrote."""
+    if len(letters) > CELLS or not set(letters) <= set(BRICK_LETTERS):
+        raise ValueError(f"a layout is at most {CELLS} of the letters {BRICK_LETTERS!r}")
     return [BRICK_LETTERS.index(letter) for letter in letters.ljust(CELLS, BRICK_LETTERS[0])]
 
 
@@ -229,6 +300,9 @@ def _plain_plan(plan: LevelPlan) -> dict[str, Any]:
 
 
 def _read_plan(plain: dict[str, Any]) -> LevelPlan:
+    """Return the plan that `_plain_plan` wrote."""
+    if not all(isinstance(text, str) for text in (*plain["names"], *plain["bricks"])):
+        raise ValueError("no game has such levels")
     table = np.zeros(len(plain["bricks"]), LevelEntry)
     table["kind"] = [_kinds(letters) for letters in plain["bricks"]]
     table["boss"] = plain["boss"]
@@ -253,5 +327,6 @@ def _pack_commands(commands: NDArray[np.float64]) -> tuple[list[list[float]] | N
 def _unpack_commands(palette: list[list[float]] | None, packed: bytes) -> NDArray[np.float64]:
     array = np.frombuffer(packed, np.uint8)
     if palette is not None:
-        return np.array(palette, np.float64).reshape(-1, 2)[array]
+        # Of at least one command, because none is no array of two columns.
+        return np.array(palette or [[0.0, 0.0]], np.float64).reshape(-1, 2)[array]
     return np.ascontiguousarray(array.reshape(16, -1).T).view(np.float64)

@@ -36,7 +36,7 @@ def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
     worlds = batch.worlds[share]
     if not batch.seeded[share].all():
         raise RuntimeError("there is no state yet: reset the environment before a snapshot")
-    with batch.alone():
+    with batch.alone:
         content = (
             _SIZES.pack(len(batch.setup), len(worlds)),
             batch.setup,
@@ -59,7 +59,7 @@ def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has another number of worlds, {len(state[0])} instead of "
             f"{batch.num_worlds}; spread() takes that of one world to all"
         )
-    with batch.alone():
+    with batch.alone:
         batch.restore(*state)
 
 
@@ -75,7 +75,7 @@ def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has {len(state[0])} worlds, and spread() takes that of one: of a single "
             "environment, or snapshot(world)"
         )
-    with batch.alone():
+    with batch.alone:
         batch.restore(*state)
 
 

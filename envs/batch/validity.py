@@ -9,13 +9,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...physics.kernels import inner, kernel
 from ...physics.kernels.borrowed import borrowed
 from ...physics.kernels.layouts import record_dtype
 from ..ranges import OUTCOME_RANGES, WORLD_RANGES, Range
-from ..rules import EMPTY, GOLD
 from ..state import Outcome, SharedRules, World, Worlds
 from .relations import RELATED, find_fault
 
@@ -129,15 +127,3 @@ def _are_within(numbers: Any, field: Any) -> bool:
         if not field.low <= float(numbers[place]) <= field.high:
             return False
     return True
-
-
-def check_layouts(kinds: NDArray[np.uint8], boss: NDArray[np.bool_], enemies: bool) -> None:
-    """Raise a ValueError if a round could not be cleared, because it has nothing to hit.
-
-    Args:
-        kinds: of the bricks of rounds, [n, cells]; boss: [n], whether the boss is there.
-        enemies: whether the game has enemies and the boss.
-    """
-    breakable = ((kinds > EMPTY) & (kinds < GOLD)).any(axis=1)
-    if not (breakable | boss).all() or (boss.any() and not enemies):
-        raise ValueError("no game has such levels: one of them has nothing to hit")

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..atomic import write_atomically
+
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _DEPTH = 8  # bits per channel
 _COLOUR_TYPES = {1: 0, 3: 2}  # by number of channels: grey; red, green and blue
@@ -23,7 +25,7 @@ def write_png(path: str | PathLike[str], picture: NDArray[np.uint8]) -> None:
     Raises:
         OSError: the file can't be written.
     """
-    Path(path).write_bytes(png_bytes(picture))
+    write_atomically(Path(path), png_bytes(picture))
 
 
 def png_bytes(picture: NDArray[np.uint8]) -> bytes:

@@ -104,6 +104,8 @@ def parse_level(text: str, source: str) -> Level:
                 raise ValueError(f"{where}: unknown heading {key!r}; known: {', '.join(header)}")
             if key == "boss" and value not in ("yes", "no"):
                 raise ValueError(f"{where}: boss must be 'yes' or 'no'; got {value!r}")
+            if not value.replace("\t", " ").isprintable():
+                raise ValueError(f"{where}: {key} has characters that steer terminals: {value!r}")
             header[key] = value
         elif line.strip() or rows:
             first_line = first_line or number

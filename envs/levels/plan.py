@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..rules import DIFFICULTY_AFTER_CAMPAIGN
+from ..rules import DIFFICULTY_AFTER_CAMPAIGN, EMPTY, GOLD
 from ..state import LevelEntry
 from .files import CAMPAIGN, load_level
 from .generator import FIRST_TEST_SEED, MAX_SEED, TRAIN_SEEDS
@@ -67,6 +68,18 @@ def check_boss(config: "Config", name: str) -> None:
     """Raise a ValueError if a level has the boss but the game has no enemies."""
     if load_level(name).boss and not config.enemies:
         raise ValueError(f"level {name!r} has the boss, who can't come with enemies=False")
+
+
+def check_layouts(kinds: NDArray[np.uint8], boss: NDArray[np.bool_], enemies: bool) -> None:
+    """Raise a ValueError if a round could not be cleared, because it has nothing to hit.
+
+    Args:
+        kinds: of the bricks of rounds, [n, cells]; boss: [n], whether the boss is there.
+        enemies: whether the game has enemies and the boss.
+    """
+    breakable = ((kinds > EMPTY) & (kinds < GOLD)).any(axis=1)
+    if not (breakable | boss).all() or (boss.any() and not enemies):
+        raise ValueError("no game has such levels: one of them has nothing to hit")
 
 
 def seed_range(levels: str | range | Sequence[str]) -> range | None:

@@ -51,6 +51,7 @@ from ..rules import (
 )
 from ..state import ABSENT, HELD, RulesRecord, SharedRules, WorldRecord, Worlds
 from .layout import Part, slices
+from .pay import brick_pay, has_pay, life_distance, shows_pay
 from .protocol import Observe
 from .shown import (
     ALL_BRICKS,
@@ -94,6 +95,8 @@ EXTRA_PARTS = (
     Part("shard", 1, "shards"),
     Part("shard_motion", 2, "velocity to the right and up (full speed)"),
 )
+# The last plane, only with `reward="score"`.
+PAY_PARTS = (Part("brick_points", 1, "what breaking the brick pays, points / 1000"),)
 _CORE = slices(CORE_PARTS)
 CORE_PLANES = _CORE["ball_held"].stop
 _EXTRAS = slices(EXTRA_PARTS, CORE_PLANES)
@@ -106,6 +109,8 @@ _STATUS = (
     *("capsule_catch", "capsule_enlarge", "capsule_laser", "capsule_slow", "capsule_disrupt"),
     *("capsule_break", "capsule_player"),
     *("beam_wait", "enemy_wait", "shard_wait"),
+    # Only with `reward="score"`.
+    "next_life",
 )
 # The row of each number in the plane `status`. Each is scaled as in the `vector` observation.
 STATUS = {name: row for row, name in enumerate(_STATUS)}
@@ -113,6 +118,7 @@ STATUS = {name: row for row, name in enumerate(_STATUS)}
 _BRICK = _CORE["brick"].start * PLANE
 _HITS_LEFT = _CORE["hits_left"].start * PLANE
 _GOLD = _CORE["gold"].start * PLANE
+_NEXT_LIFE = STATUS["next_life"]
 _STATUS_PLANE = _CORE["status"].start * PLANE
 _PADDLE = _CORE["paddle"].start * PLANE
 _PADDLE_MOTION = _CORE["paddle_motion"].start * PLANE
@@ -145,8 +151,12 @@ class GridObserver:
     def __init__(self, config: Config, num_worlds: int) -> None:
         """Make the arrays; games without capsules and enemies have no planes for them."""
         full = config.capsules or config.enemies
-        shape = (FULL_PLANES if full else CORE_PLANES, GRID_ROWS, COLUMNS)
+        planes = FULL_PLANES if full else CORE_PLANES
         self.layout = _CORE | _EXTRAS if full else dict(_CORE)
+        if shows_pay(config):
+            self.layout |= slices(PAY_PARTS, planes)
+            planes += len(PAY_PARTS)
+        shape = (planes, GRID_ROWS, COLUMNS)
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, shape, np.float32)
         self.observations: NDArray[np.float32] = np.zeros((num_worlds, *shape), np.float32)
@@ -214,14 +224,17 @@ def _observe_grid(
     for index in range(marks[0]):
         row[marks[1 + index]] = 0.0
     marks[0] = 0
+    pay = row.shape[0] - PLANE  # where the last plane begins
     count = bricks_to_write(world, shown)
     if count == ALL_BRICKS:
         for cell in range(CELLS):
-            _write_brick(world, rules, row, cell)
+            _write_brick(world, rules, row, pay, cell)
     for change in range(count):
-        _write_brick(world, rules, row, changed_cell(world, change))
-    full = row.shape[0] > CORE_PLANES * PLANE
+        _write_brick(world, rules, row, pay, changed_cell(world, change))
+    full = (pay if has_pay(rules) else row.shape[0]) > CORE_PLANES * PLANE
     _write_status(world, rules, row, full)
+    if has_pay(rules):
+        _write_number(row, _NEXT_LIFE, life_distance(world))
     _mark_paddle(world, rules, row, marks)
     _mark_balls(world, rules, row, marks)
     if full:
@@ -232,14 +245,16 @@ def _observe_grid(
 
 
 @inner
-def _write_brick(world: WorldRecord, rules: RulesRecord, row: Any, cell: int) -> None:
-    """Write what the planes of the bricks show in a cell."""
+def _write_brick(world: WorldRecord, rules: RulesRecord, row: Any, pay: int, cell: int) -> None:
+    """Write what the planes of the bricks show in a cell; that of what they pay begins at `pay`."""
     hits = world.brick_hits[cell]
     place = _LATTICE + cell
     breaks = hits > 0 and hits != UNBREAKABLE
     row[_BRICK + place] = 1.0 if breaks else 0.0
     row[_HITS_LEFT + place] = rules.brick_values[hits] if breaks else 0.0
     row[_GOLD + place] = 1.0 if hits == UNBREAKABLE else 0.0
+    if has_pay(rules):
+        row[pay + place] = brick_pay(world, cell)
 
 
 @inlined

@@ -50,6 +50,7 @@ from ..state import (
     zeros_in_lines,
 )
 from .layout import Part, slices
+from .pay import brick_pay, has_pay, life_distance, shows_pay
 from .protocol import Observe
 from .shown import (
     ALL_BRICKS,
@@ -109,10 +110,16 @@ EXTRA_PARTS = (
     Part("shard_vx", MAX_SHARDS, "x velocity (full speed)"),
     Part("shard_vy", MAX_SHARDS, "y velocity (full speed)"),
 )
+# The last parts, only with `reward="score"`.
+PAY_PARTS = (
+    Part("next_life", 1, "points to the next life / 60000"),
+    Part("brick_points", CELLS, "row by row from the top: what breaking it pays, points / 1000"),
+)
 _CORE = slices(CORE_PARTS)
 CORE_LENGTH = _CORE["bricks"].stop
 _EXTRAS = slices(EXTRA_PARTS, CORE_LENGTH)
 FULL_LENGTH = _EXTRAS["shard_vy"].stop
+PAY_LENGTH = slices(PAY_PARTS)["brick_points"].stop
 
 _PADDLE = _CORE["paddle"].start
 _IN_PLAY = _CORE["ball_in_play"].start
@@ -170,6 +177,9 @@ class VectorObserver:
         full = config.capsules or config.enemies
         length = FULL_LENGTH if full else CORE_LENGTH
         self.layout = _CORE | _EXTRAS if full else dict(_CORE)
+        if shows_pay(config):
+            self.layout |= slices(PAY_PARTS, length)
+            length += PAY_LENGTH
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, (length,), np.float32)
         self.observations: NDArray[np.float32] = zeros_in_lines((num_worlds, length), np.float32)
@@ -221,21 +231,27 @@ def observe_vectors(worlds: Worlds, rules: SharedRules, rows: Any, shown: Any, m
     """
     for index in range(worlds.shape[0]):
         if index + _AHEAD < worlds.shape[0]:
-            _prefetch_row(worlds[index + _AHEAD], rows, index + _AHEAD)
+            _prefetch_row(worlds[index + _AHEAD], rules[0], rows, index + _AHEAD)
         if mask[index]:
             _observe_vector(worlds[index], rules[0], rows[index], shown[index])
 
 
 @inlined
-def _prefetch_row(world: WorldRecord, rows: Any, index: int) -> None:
+def _prefetch_row(world: WorldRecord, rules: RulesRecord, rows: Any, index: int) -> None:
     """Ask for those parts of a world's row that its observation will write."""
     prefetch(rows, index, _HEAD, _HEAD_SIZE)
-    if rows.shape[1] > CORE_LENGTH:
+    if _length_without_pay(rules, rows.shape[1]) > CORE_LENGTH:
         prefetch(rows, index, _GATES, _GATES_SIZE)
         if _has_capsules(world):
             prefetch(rows, index, _CAPSULES, _CAPSULES_SIZE)
         if _has_enemies(world):
             prefetch(rows, index, _ENEMIES, _ENEMIES_SIZE)
+
+
+@inlined
+def _length_without_pay(rules: RulesRecord, length: int) -> int:
+    """Return how many numbers of a row come before those of `PAY_PARTS`."""
+    return length - PAY_LENGTH if has_pay(rules) else length
 
 
 @inlined
@@ -271,22 +287,31 @@ def _observe_vector(world: WorldRecord, rules: RulesRecord, row: Any, shown: Sho
     row[_IDLE] = min(1.0, world.idle * (1.0 / IDLE_TICKS))
     row[_DECISIONS] = world.decisions / rules.max_decisions
     row[_LIVES] = 1.0 / max(1, world.lives)
-    _observe_bricks(world, rules, row, shown)
-    if row.shape[0] > CORE_LENGTH:
+    length = _length_without_pay(rules, row.shape[0])
+    _observe_bricks(world, rules, row, length + 1, shown)
+    if has_pay(rules):
+        row[length] = life_distance(world)
+    if length > CORE_LENGTH:
         _observe_capsules(world, row, shown)
         _observe_enemies(world, row, shown)
 
 
 @inlined
-def _observe_bricks(world: WorldRecord, rules: RulesRecord, row: Any, shown: ShownRow) -> None:
-    """Write the bricks that have changed."""
+def _observe_bricks(
+    world: WorldRecord, rules: RulesRecord, row: Any, pay: int, shown: ShownRow
+) -> None:
+    """Write the bricks that have changed, and what they pay, from the place `pay` on."""
     count = bricks_to_write(world, shown)
     if count == ALL_BRICKS:
         for cell in range(CELLS):
             row[_BRICKS + cell] = rules.brick_values[world.brick_hits[cell]]
+            if has_pay(rules):
+                row[pay + cell] = brick_pay(world, cell)
     for change in range(count):
         cell = changed_cell(world, change)
         row[_BRICKS + cell] = rules.brick_values[world.brick_hits[cell]]
+        if has_pay(rules):
+            row[pay + cell] = brick_pay(world, cell)
 
 
 @inlined

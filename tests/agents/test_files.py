@@ -10,15 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arkanoid.agents.experiment import files
-from arkanoid.agents.experiment.files import (
-    quoted,
-    read_limited,
-    remove_unfinished,
-    replace_atomically,
-    write_atomically,
-)
+from arkanoid.agents.experiment.files import quoted, read_limited
 from arkanoid.agents.show.film import Picture, write_film
+from arkanoid.envs import atomic
+from arkanoid.envs.atomic import remove_unfinished, replace_atomically, write_atomically
 from helpers.processes import run_program
 
 FULL = OSError(errno.ENOSPC, "No space left on device")
@@ -55,7 +50,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
             fail()
 
     if where != "write":
-        monkeypatch.setattr(files.os, where, fail)
+        monkeypatch.setattr(atomic.os, where, fail)
     with pytest.raises(type(error)):
         replace_atomically(path, write)
     assert path.read_bytes() == b"old"
@@ -99,7 +94,7 @@ def test_a_link_is_replaced_and_not_followed(tmp_path: Path) -> None:
 def test_what_a_killed_process_left_is_removed(tmp_path: Path) -> None:
     program = (
         "import os, sys; from pathlib import Path\n"
-        "from arkanoid.agents.experiment.files import replace_atomically\n"
+        "from arkanoid.envs.atomic import replace_atomically\n"
         "replace_atomically(Path(sys.argv[1]), lambda unfinished: os._exit(7))"
     )
     path = tmp_path / "file"

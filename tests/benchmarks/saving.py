@@ -34,8 +34,15 @@ def begun(**keywords: Any) -> ArkanoidEnv:
     env = ArkanoidEnv(**keywords)
     env.reset(seed=0)
     for _ in range(100):
-        env.step(3)
+        step(env, 3)
     return env
+
+
+def step(env: ArkanoidEnv, action: int) -> None:
+    """Play a decision; after a game's end begin the next one."""
+    _, _, terminated, truncated, _ = env.step(action)
+    if terminated or truncated:
+        env.reset()
 
 
 def main() -> None:
@@ -50,7 +57,7 @@ def main() -> None:
     futures.spread(snapshot)
     all_worlds = futures.snapshot()
     rows: dict[str, Callable[[], Any]] = {
-        "step": lambda: env.step(0),
+        "step": lambda: step(env, 0),
         f"snapshot ({len(snapshot):,} bytes)": env.snapshot,
         "restore": lambda: env.restore(snapshot),
         "clone": env.clone,

@@ -74,10 +74,9 @@ def test_rescaled_actions_are_never_refused():
     env.reset(seed=0)
     env.action_space.seed(0)
     for _ in range(200):
-        env.step(env.action_space.sample())
-        env.step(env.action_space.high)
-        if env.step(env.action_space.low)[2]:
-            env.reset()
+        for action in (env.action_space.sample(), env.action_space.high, env.action_space.low):
+            if env.step(action)[2]:
+                env.reset()
 
 
 @pytest.mark.parametrize("actions", COMMANDS)

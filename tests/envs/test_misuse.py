@@ -168,7 +168,7 @@ import numpy as np
 from arkanoid.physics import Body, Particle, World, WorldBatch
 from arkanoid.envs import ArkanoidVectorEnv
 
-env = ArkanoidVectorEnv(8, threads=3)
+env = ArkanoidVectorEnv(8, threads=2)
 env.reset(seed=0)
 world = World([Body(Particle(1.0), (0.0, 0.0), (1.0, 0.0), mass=1.0)])
 batch = WorldBatch(world, 4, threads=2)

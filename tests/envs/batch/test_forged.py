@@ -1,11 +1,20 @@
 """Snapshots and replays that somebody forged: refused, or harmless."""
 
+import dataclasses
+import errno
+import json
 import pickle
+import struct
+import tracemalloc
+import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
+from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv, Replay, atomic
+from arkanoid.envs.batch.replays import MOST_DECISIONS
+from arkanoid.envs.draw.png import write_png
+from arkanoid.envs.levels.files import parse_level
 from arkanoid.envs.observe.planes import MAX_MARKS
 from arkanoid.envs.ranges import OUTCOME_RANGES, WORLD_RANGES
 from arkanoid.envs.state import Outcome, World
@@ -16,6 +25,7 @@ from helpers.states import writable_state
 # What kernels do with an index outside its array, they say.
 CHECKED = {"NUMBA_BOUNDSCHECK": "1"}
 HERE = Path(__file__).parent
+GOLDEN = HERE / "golden.replay"
 
 
 def begun(**keywords):
@@ -175,3 +185,107 @@ def test_a_hundred_thousand_forged_snapshots_do_no_harm(seed):
         *(HERE / "forge_snapshots.py", "10000", str(seed)),
         **{"warnings": "default", "changes": CHECKED, "timeout": 3600.0},
     )
+
+
+def test_forged_replays_do_no_harm():
+    """They raised errors of zlib and struct, KeyErrors and AttributeErrors, too."""
+    run_python(HERE / "forge_replays.py", "1500", "0", warnings="default", changes=CHECKED)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_a_hundred_thousand_forged_replays_do_no_harm(seed):
+    run_python(
+        *(HERE / "forge_replays.py", "25000", str(seed)),
+        **{"warnings": "default", "changes": CHECKED, "timeout": 3600.0},
+    )
+
+
+def rewritten(edit, commands=None):
+    """Return the golden replay with another JSON, which `edit` changes in place."""
+    replay = GOLDEN.read_bytes()
+    content = bytes(opened(replay))
+    (length,) = struct.unpack_from("<I", content)
+    head = json.loads(zlib.decompress(content[4 : 4 + length]))
+    edit(head)
+    text = zlib.compress(json.dumps(head).encode())
+    packed = content[4 + length :] if commands is None else commands
+    return sealed_again(replay, struct.pack("<I", len(text)) + text + packed)
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (lambda head: head.pop("result"), "corrupt"),
+        (lambda head: head.update(config=[]), "corrupt"),
+        (lambda head: head.update(version="1.0\x1b[2J"), "corrupt"),
+        (lambda head: head.update(version=None), "corrupt"),
+        (lambda head: head.update(palette=[[0.0, 0.0]]), "corrupt"),
+        (lambda head: head.update(palette=[]), "corrupt"),
+        (lambda head: head["result"].update(decisions=2780), "corrupt"),
+        (lambda head: head["result"].update(decisions=10**9), "at most 10,000,000 decisions"),
+        (lambda head: head["start"].update(random=1.5e300), "no game begins like this"),
+        (lambda head: head["start"].update(layout="w" * 199), "a layout is at most 198"),
+        (lambda head: head["start"]["fields"].update(start=1), "nothing to hit"),
+        (lambda head: head["levels"]["bricks"].__setitem__(0, "X" * 198), "nothing to hit"),
+        (lambda head: head["levels"].update(first_difficulty=float("nan")), "no game has such"),
+        (lambda head: head["levels"].update(names=["Ripple"]), "no game has such levels"),
+    ],
+)
+def test_what_is_no_replay_is_a_value_error(edit, said):
+    with pytest.raises(ValueError, match=said):
+        Replay.from_bytes(rewritten(edit))
+
+
+def test_a_replay_expands_to_no_more_than_its_decisions_take():
+    """A file of 1 MB asked for 16 GB of memory."""
+    bomb = zlib.compress(bytes(1 << 26))
+
+    def edit(head):
+        head["palette"] = None
+
+    for forged in (rewritten(edit, bomb), rewritten(lambda head: None, bomb)):
+        tracemalloc.start()
+        with pytest.raises(ValueError, match="corrupt"):
+            Replay.from_bytes(forged)
+        assert tracemalloc.get_traced_memory()[1] < 1 << 20
+        tracemalloc.stop()
+    text = zlib.compress(b" " * (1 << 25))
+    forged = sealed_again(GOLDEN.read_bytes(), struct.pack("<I", len(text)) + text)
+    with pytest.raises(ValueError, match="corrupt"):
+        Replay.from_bytes(forged)
+
+
+def test_a_game_too_long_for_a_file_is_not_written(tmp_path):
+    replay = Replay.load(GOLDEN)
+    commands = np.broadcast_to(replay.commands[:1], (MOST_DECISIONS + 1, 2))
+    with pytest.raises(ValueError, match="at most 10,000,000 decisions"):
+        dataclasses.replace(replay, commands=commands).save(tmp_path / "long.replay")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
+    """On a full disk, what was there before was lost."""
+    replay, picture = Replay.load(GOLDEN), np.zeros((4, 4, 3), np.uint8)
+    for name, write in [
+        ("some.replay", replay.save),
+        ("some.png", lambda path: write_png(path, picture)),
+    ]:
+        path = tmp_path / name
+        write(path)
+        before = path.read_bytes()
+
+        def fail(descriptor):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        with monkeypatch.context() as patched:
+            patched.setattr(atomic.os, "fsync", fail)
+            with pytest.raises(OSError, match="No space left"):
+                write(path)
+        assert path.read_bytes() == before
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["some.png", "some.replay"]
+
+
+def test_names_that_steer_terminals_are_refused():
+    with pytest.raises(ValueError, match=r"line 1: name has characters .*\\x1b"):
+        parse_level("name: \x1b[2Jnothing\n...www.....\n", "a.txt")

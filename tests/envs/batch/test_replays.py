@@ -1,6 +1,7 @@
 """Recorded games: small files, and each is played again bit for bit or refused."""
 
 import dataclasses
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -319,3 +320,66 @@ def test_the_recording_changes_no_bit_of_the_game():
         env.reset(seed=0)
         play(env, 100)
     assert recorded.snapshot() == other.snapshot()
+
+
+def interrupted_at(event, function):
+    """Call a function; Ctrl-C comes with its n-th call of ours. Tell whether it came."""
+    left = event
+
+    def profile(frame, kind, argument):
+        nonlocal left
+        # Python looks for signals where a function begins.
+        if kind == "call" and frame.f_globals.get("__name__", "").startswith("arkanoid."):
+            left -= 1
+            if left == 0:
+                raise KeyboardInterrupt
+
+    sys.setprofile(profile)
+    try:
+        function()
+    except KeyboardInterrupt:
+        return True
+    finally:
+        sys.setprofile(None)
+    return False
+
+
+@pytest.mark.parametrize("mode", ["single", "SameStep"])
+@pytest.mark.parametrize("what", ["step", "last step", "reset"])
+def test_a_recording_replays_wherever_ctrl_c_has_come(what, mode):
+    """The recording lacked the step that Ctrl-C interrupted: 177 of 300 did not replay."""
+    interrupted = event = 0
+    came = True
+    while came:
+        event += 1
+        single = mode == "single"
+        keywords = LIVELY | {"max_decisions": 12, "lives": 9}
+        env = (
+            ArkanoidEnv(**keywords)
+            if single
+            else ArkanoidVectorEnv(1, autoreset_mode=mode, **keywords)
+        )
+        recorder = env.record()
+        env.reset(seed=event)
+
+        def step(env=env, single=single):
+            env.step(3 if single else np.array([3]))
+
+        for _ in range(11 if what == "last step" else 5):
+            step()
+        came = interrupted_at(event, env.reset if what == "reset" else step)
+        for _ in range(2):
+            try:
+                replay = recorder.replay()
+            except RuntimeError:
+                interrupted += 1
+            else:
+                play_replay(replay)
+            if not env.state["done"].any():
+                step()
+        # The next game is recorded again.
+        env.reset()
+        step()
+        assert play_replay(recorder.replay()).decisions == 1
+    assert event > 5
+    assert interrupted > 2

@@ -123,6 +123,8 @@ def fuzz(seed, games, worlds, steps):
             observations, rewards, _, _, infos = env.step(actions)
             if step % 7 == 0:
                 check(env, observations, rewards)
+                # Whatever play leads to, a snapshot of it is accepted.
+                env.restore(env.snapshot())
             assert all((infos[key] >= 0).all() for key in infos if not key.startswith(("_", "fin")))
             if rng.random() < 0.005:
                 # Something out of the ordinary: a capsule for everybody.

@@ -1,5 +1,6 @@
 """The command `arkanoid play`: what it saves, and its error messages."""
 
+import shlex
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -51,7 +52,7 @@ def test_playing_saves_a_replay_however_it_ends(
     path = tmp_path / "new folder" / "game.replay"
     arguments = ["play", "--level", "comb", "--seed", "3", "--lives", "5", "--save", str(path)]
     assert cli.main(arguments) == status
-    assert f"arkanoid replay {path}" in capsys.readouterr().out
+    assert f"arkanoid replay {shlex.quote(str(path))}" in capsys.readouterr().out
     replay = Replay.load(path)
     assert play_replay(replay).decisions >= 200
     assert (replay.config.lives, replay.config.frame_skip) == (5, 1)
