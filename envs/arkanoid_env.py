@@ -116,7 +116,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         Raises:
             TypeError, ValueError: it is not in the action space. (Velocities beyond a bound count
                 as the bound.)
-            ResetNeeded: there was no reset yet, or the episode is over.
+            gymnasium.error.ResetNeeded: there was no reset yet, or the episode is over.
         """
         batch = self._batch
         table = self._commands

@@ -159,8 +159,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         Raises:
             ValueError: they are not in the action space.
-            ResetNeeded: a world was never reset, or with `autoreset_mode="Disabled"` its episode is
-                over.
+            gymnasium.error.ResetNeeded: a world was never reset, or its episode is over and the
+                autoreset mode is ``"Disabled"``.
         """
         batch = self._batch
         batch.command(actions)
