@@ -1,4 +1,7 @@
-"""How sure a mean is: bootstrap intervals."""
+"""How sure a mean is: bootstrap intervals.
+
+Written here, because SciPy's bootstrap cannot resample within strata: the levels of a suite.
+"""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -25,7 +25,6 @@ def play(env, steps):
 def test_stable_baselines3s_wrapper():
     """Every life ends an episode, and fire serves."""
     wrappers = pytest.importorskip("stable_baselines3.common.atari_wrappers")
-    pytest.importorskip("cv2")
     env = wrappers.AtariWrapper(gym.make(GAME))
     assert env.observation_space.shape == (84, 84, 1)
     assert {0, 1, 2} <= set(play(env, 600))
@@ -43,7 +42,6 @@ def test_fire_reset_and_episodic_life_of_stable_baselines3():
 
 
 def test_gymnasiums_preprocessing():
-    pytest.importorskip("cv2")
     env = gym.wrappers.AtariPreprocessing(gym.make(GAME), terminal_on_life_loss=True)
     assert env.observation_space.shape == (84, 84)
     assert set(play(env, 600)) == {2}  # it begins a new game after each life
