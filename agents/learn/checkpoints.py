@@ -145,7 +145,8 @@ def _check(state: State, fresh: State, weights: list[torch.Tensor]) -> None:
     for name in ("policy", "counters", "last", "statistics", "random"):
         _check_form(state[name], fresh[name], name)
     _check_optimizer(state["optimizer"], fresh["optimizer"], weights)
-    if not 0 <= state["counters"]["num_timesteps"] < 2**63:
+    counters = state["counters"]
+    if not all(0 <= counters[name] < 2**62 for name in ("num_timesteps", "_n_updates")):
         raise ValueError("counters are out of their range")
     if not 0 <= state["random"]["numpy"][1] <= len(state["random"]["numpy"][0]):
         raise ValueError("random.numpy is out of its range")
@@ -155,6 +156,9 @@ def _check(state: State, fresh: State, weights: list[torch.Tensor]) -> None:
     snapshot = state["environment"]
     if not isinstance(snapshot, torch.Tensor) or snapshot.dtype != torch.uint8:
         raise ValueError("environment must hold bytes")
+    # Otherwise a single byte could look like billions.
+    if snapshot.dim() != 1 or not snapshot.is_contiguous():
+        raise ValueError("environment must hold one row of bytes")
 
 
 def _check_recent(state: Any, fresh: State) -> None:
@@ -207,6 +211,8 @@ def _check_optimizer(state: Any, fresh: Any, weights: list[torch.Tensor]) -> Non
         weight = weights[index]
         like = {"step": torch.tensor(0.0), "exp_avg": weight, "exp_avg_sq": weight}
         _check_form(of_weight, like, f"optimizer.{index}")
+        if of_weight["step"] < 0 or (of_weight["exp_avg_sq"] < 0).any():
+            raise ValueError("optimizer has a negative number where none can be")
 
 
 def _check_keys(value: Any, fresh: State, where: str) -> None:
@@ -265,8 +271,10 @@ def read_checkpoint(path: Path) -> State:
         raise _damaged(path, str(error)) from None
     version = state.get("format")
     if type(version) is not int or version != _FORMAT:
+        # Anything else than a number may be endless in words.
+        named = version if type(version) is int and 0 <= version < 1000 else "unknown"
         raise SettingsError(
-            f"{path}: the checkpoint's format is {version!r:.40}, and this version "
+            f"{path}: the checkpoint's format is {named}, and this version "
             f"reads {_FORMAT}: resume with the version that wrote it (run.json tells)"
         )
     return state
