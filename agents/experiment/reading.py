@@ -5,7 +5,6 @@ own), or `dict[str, Any]`: a free table, whose keys are checked elsewhere.
 """
 
 import difflib
-import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -17,6 +16,7 @@ import tomli_w
 from pydantic import TypeAdapter, ValidationError
 
 from ... import configs
+from ...envs.config import plain
 from .errors import SettingsError
 from .files import read_limited
 
@@ -134,21 +134,16 @@ def check_value(schema: type[Any], key: str, value: Any, source: str) -> None:
 
 def to_toml(settings: Any) -> str:
     """Return settings as a TOML document that `read_settings` reads back to equal ones."""
-    return tomli_w.dumps(_plain(asdict(settings)))
+    return tomli_w.dumps(_without_none(asdict(settings)))
 
 
-def _plain(value: Any) -> Any:
-    """Return a value as TOML has it: without what is None, a range of seeds as its text."""
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items() if item is not None}
-    if isinstance(value, range):
-        return f"seeds:{value.start}-{value.stop - 1}"
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    # A number of NumPy.
-    return value.item() if hasattr(value, "item") else value
+def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table as TOML has it, which knows nothing like None."""
+    return {
+        key: _without_none(value) if isinstance(value, Mapping) else plain(value)
+        for key, value in table.items()
+        if value is not None
+    }
 
 
 def parse_toml_value(text: str) -> Any:
