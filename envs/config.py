@@ -44,8 +44,7 @@ DEFLECTION_MEANINGS = {
 }
 # The keywords that say only how a game is seen, or cut into episodes. All others decide its course.
 _PICTURES = ("size", "grey", "stack", "channels")
-SEEN = ("observation", *_PICTURES)
-_NOT_OF_THE_GAME = (*SEEN, "episodic_life")
+SEEN = ("observation", *_PICTURES, "episodic_life")
 MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
 
@@ -181,7 +180,7 @@ class Config:
     def of_the_game(self) -> "Config":
         """Return the same game with the default observation, as one episode."""
         keywords = vars(self).items()
-        return Config(**{name: value for name, value in keywords if name not in _NOT_OF_THE_GAME})
+        return Config(**{name: value for name, value in keywords if name not in SEEN})
 
 
 def plain(value: Any) -> Any:

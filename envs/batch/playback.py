@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..state import LIFE_LOST
 from .batch import Batch
 from .recorder import NOTE_EVERY, Recorder
 from .replays import Replay, Result
@@ -65,6 +66,7 @@ def replay_states(replay: Replay | str | PathLike[str]) -> Iterator[Batch]:
             raise ReplayDivergedError(
                 f"the game is over after {decision - 1} decisions instead of {len(game.commands)}"
             )
+        begin_next_life(batch)
         batch.commands[0] = command
         batch.step()
         if decision % NOTE_EVERY == 0:
@@ -76,6 +78,14 @@ def replay_states(replay: Replay | str | PathLike[str]) -> Iterator[Batch]:
             f"the game ends differently: {again.result} instead of {game.result}, or with other "
             f"states after decision {len(game.commands) // NOTE_EVERY * NOTE_EVERY}"
         )
+
+
+def begin_next_life(batch: Batch) -> bool:
+    """Begin the next episode of a replayed game, if the loss of a life has ended one."""
+    begins = bool(batch.worlds["done"][0] == LIFE_LOST)
+    if begins:
+        batch.reset(np.ones(1, np.bool_))
+    return begins
 
 
 def _loaded(replay: Any) -> Replay:

@@ -216,6 +216,8 @@ class Replay:
 
     def _check(self) -> None:
         """Raise a ValueError for what no player could have done: files may come from anyone."""
+        if self.config != self.config.of_the_game():
+            raise ValueError("the replay is corrupt: it says how the game is seen; none does")
         move, fire = self.commands.T
         illegal = ~((abs(move) <= 1.0) & ((fire == 0.0) | (fire == 1.0)))  # so that NaN is, too
         if illegal.any():

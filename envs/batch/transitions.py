@@ -12,7 +12,7 @@ from ..actions import COMMANDS
 from ..config import SEEN
 from ..observe.parts import copy_of
 from ..state import INFO_FIELDS
-from .playback import replay_states
+from .playback import begin_next_life, replay_states
 from .replays import Replay
 
 
@@ -46,7 +46,9 @@ def replay_transitions(
         replay: the game, or the path of its file.
         actions: the form of the actions, see `Config`; None is that in which the game was played.
         **keywords: how the game is seen, whatever was seen when it was recorded: ``observation``,
-            ``size``, ``grey``, ``stack``, ``channels``.
+            ``size``, ``grey``, ``stack``, ``channels``. And how it is cut: with
+            ``episodic_life=True`` each lost life ends an episode, as it does in an environment
+            with this keyword.
 
     Raises:
         OSError, ValueError, ReplayDivergedError: as `play_replay`.
@@ -76,7 +78,8 @@ def _transitions(game: Replay, actions: NDArray[Any]) -> Iterator[Transition]:
             {name: outcome[field].item() for name, field in INFO_FIELDS.items()},
             after,
         )
-        before = after
+        # A new life's first picture fills the stack: then this is another observation.
+        before = copy_of(batch.observations[0]) if begin_next_life(batch) else after
 
 
 def encode_commands(actions: str, commands: NDArray[np.float64]) -> NDArray[Any]:

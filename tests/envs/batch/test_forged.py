@@ -218,6 +218,8 @@ def rewritten(edit, commands=None):
     [
         (lambda head: head.pop("result"), "corrupt"),
         (lambda head: head.update(config=[]), "corrupt"),
+        (lambda head: head["config"].update(episodic_life=True), "how the game is seen"),
+        (lambda head: head["config"].update(observation="rgb", size=4096), "how the game is seen"),
         (lambda head: head.update(version="1.0\x1b[2J"), "corrupt"),
         (lambda head: head.update(version=None), "corrupt"),
         (lambda head: head.update(palette=[[0.0, 0.0]]), "corrupt"),

@@ -4,7 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from arkanoid.envs import ArkanoidEnv, ReplayDivergedError, replay_transitions
+from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv, ReplayDivergedError, replay_transitions
+from arkanoid.envs.state import INFO_FIELDS
 
 VIEWS = [
     {},
@@ -28,23 +29,48 @@ def played(seen, actions="discrete6", **game):
     before, _ = env.reset(seed=3)
     env.action_space.seed(1)
     steps = []
-    done = False
-    while not done:
+    over = False
+    while not over:
         action = env.action_space.sample()
         after, *rest = env.step(action)
         steps.append((before, action, *rest, after))
-        before, done = after, rest[1] or rest[2]
+        _, terminated, truncated, info = rest
+        over = truncated or info["lives"] == 0
+        before = env.reset()[0] if terminated and not over else after
     return recorder.replay(), steps
 
 
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("recorded", VIEWS[:2])
-def test_transitions_are_what_the_environment_gave(view, recorded):
-    """In any observation, whatever was observed when the game was recorded."""
-    game = {"sticky_action": 0.25, "speed": 2.0}
-    replay = played(recorded, **game)[0]
-    steps = played(view, **game)[1]
-    transitions = list(replay_transitions(replay, **view))
+def played_in_a_batch(mode, **keywords):
+    """Play in the second of three worlds; return its replay and what `step` gave for that world."""
+    env = ArkanoidVectorEnv(3, autoreset_mode=mode, **keywords)
+    recorder = env.record(1)
+    before = env.reset(seed=3)[0][1]
+    generator = np.random.default_rng(1)
+    steps = []
+    begins = False
+    while True:
+        actions = generator.integers(0, 6, 3)
+        seen, rewards, *flags, infos = env.step(actions)
+        terminated, truncated = (bool(flag[1]) for flag in flags)
+        ended = mode == "SameStep" and (terminated or truncated)
+        after = infos["final_obs"][1] if ended else seen[1]
+        found = infos["final_info"] if ended else infos
+        info = {name: found[name][1].item() for name in INFO_FIELDS}
+        if not begins:
+            steps.append(
+                (before, actions[1], rewards[1].item(), terminated, truncated, info, after)
+            )
+        if truncated or info["lives"] == 0:
+            return recorder.finished, steps
+        begins = mode == "NextStep" and terminated
+        before = seen[1]
+        done = flags[0] | flags[1]
+        if mode == "Disabled" and done.any():
+            before = env.reset(options={"reset_mask": done})[0][1]
+
+
+def agree(transitions, steps):
+    """Compare transitions with what `step` gave."""
     assert len(transitions) == len(steps) >= 20
     for transition, (before, action, reward, terminated, truncated, info, after) in zip(
         transitions, steps, strict=True
@@ -56,7 +82,47 @@ def test_transitions_are_what_the_environment_gave(view, recorded):
         assert transition.truncated is truncated
         assert transition.info == info
         assert same(transition.next_observation, after)
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("recorded", VIEWS[:2])
+def test_transitions_are_what_the_environment_gave(view, recorded):
+    """In any observation, whatever was observed when the game was recorded."""
+    game = {"sticky_action": 0.25, "speed": 2.0}
+    replay = played(recorded, **game)[0]
+    steps = played(view, **game)[1]
+    transitions = list(replay_transitions(replay, **view))
+    agree(transitions, steps)
     assert all(one.next_observation is two.observation for one, two in pairwise(transitions))
+
+
+LIVES = {"episodic_life": True, "lives": 4, "speed": 2.0, "life_penalty": 0.5}
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_each_life_is_an_episode_if_the_player_had_it_so(view):
+    """No transition ended at a lost life, and stacks of pictures went on behind it."""
+    replay, steps = played(view, sticky_action=0.25, **LIVES)
+    transitions = list(replay_transitions(replay, episodic_life=True, **view))
+    agree(transitions, steps)
+    assert sum(step.terminated for step in transitions) == 4
+    whole = list(replay_transitions(replay, **view))
+    assert [step.terminated for step in whole] == [False] * (len(whole) - 1) + [True]
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+@pytest.mark.parametrize("view", VIEWS[::2])
+def test_each_life_of_a_world_in_a_batch_is_an_episode(view, mode):
+    replay, steps = played_in_a_batch(mode, **view, **LIVES)
+    agree(list(replay_transitions(replay, episodic_life=True, **view)), steps)
+
+
+def test_a_clock_cuts_a_game_of_several_lives():
+    replay, steps = played({}, **LIVES | {"lives": 20}, max_decisions=100)
+    transitions = list(replay_transitions(replay, episodic_life=True))
+    agree(transitions, steps)
+    assert transitions[-1].truncated
+    assert sum(step.terminated for step in transitions) > 0
 
 
 def test_a_file_will_do_and_actions_take_another_form(tmp_path):
