@@ -218,7 +218,8 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         Raises:
             ValueError: the actions are continuous.
         """
-        masks: NDArray[np.bool_] = action_masks(self.config, self._batch.worlds)[0]
+        batch = self._batch
+        masks: NDArray[np.bool_] = action_masks(self.config, batch.worlds, batch.rules)[0]
         return masks
 
     def get_action_meanings(self) -> list[str]:

@@ -193,7 +193,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         Raises:
             ValueError: the actions are continuous.
         """
-        return action_masks(self.config, self._batch.worlds)
+        return action_masks(self.config, self._batch.worlds, self._batch.rules)
 
     def get_action_meanings(self) -> list[str]:
         """Return Atari's word for each action: ``"NOOP"``, ``"LEFT"``, ``"RIGHTFIRE"``, ...
