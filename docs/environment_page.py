@@ -54,12 +54,14 @@ VECTOR_KEYWORDS = {
     "threads": ("None", "how many threads step the games; None: as many as their number is worth"),
 }
 METHODS = {
-    "action_masks()": "which actions do something now: bool `[actions]`, or `[games, actions]`",
+    "action_masks()": "which actions do something in the coming decision: bool `[actions]`, or "
+    "`[games, actions]`",
     "get_action_meanings()": "Atari's word for each action",
     "ale.lives()": "balls left, the present one included (single environment)",
     "ale.getScreenRGB()": "the picture, where wrappers for Atari games look for it; also "
     "`ale.getScreenGrayscale()` (single environment)",
-    "call(), get_attr(), set_attr()": "as Gymnasium's own vector environments have them",
+    "call(), get_attr(), set_attr()": "as Gymnasium's own vector environments have them; of the "
+    "environment's own attributes only `render_mode` and `copy` can be set (vector environment)",
     "snapshot(), restore(), clone(), spread(), record()": "see [saving](saving.md)",
 }
 
@@ -291,8 +293,9 @@ All bricks of the first round stand, and the ball lies on the middle of the padd
 after {rules.SERVE_TICKS} ticks it serves itself.
 
 `reset(seed=..., options=...)` determines everything that follows: with a seed, the game forgets the
-options of earlier resets. A seed is an integer from 0 to 2^64 - 1. A reset without a seed continues
-the random numbers. The options are:
+options of earlier resets. A seed is an integer from 0 to 2^64 - 1. In a vector environment an integer
+gives game `i` the seed `seed + i`, and is at most 2^64 - `num_envs`; a list gives each game its own.
+A reset without a seed continues the random numbers. The options are:
 
 {meanings("option", START_OPTIONS)}
 
@@ -306,8 +309,8 @@ the configuration.
   after {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss ({IDLE}). Observations show
   both clocks.
 
-A step before the first reset, or after an episode's end, raises `gymnasium.error.ResetNeeded`,
-unless the vector environment resets by itself (`autoreset_mode`).
+Before the first reset, a step, a frame or masks raise `gymnasium.error.ResetNeeded`. So does a step
+after an episode's end, unless the vector environment resets by itself (`autoreset_mode`).
 
 A cleared round does not end an episode: the next round begins. With `episodic_life=True` each lost
 life ends an episode (*terminated*), and the next one begins where the game is; the game is the same

@@ -37,19 +37,31 @@ def action_meanings(actions: str) -> list[str]:
 def read_discrete(action: Any, count: int) -> int:
     """Return the number of one discrete action: an integer of Python, NumPy, torch or JAX.
 
+    Arrays have no axes: [1] is no integer. Neither is True.
+
     Raises:
         TypeError: it is no integer.
         ValueError: it is not in the space.
     """
-    try:
-        number = operator.index(action)
-    except TypeError:
-        raise TypeError(
-            f"action {action!r} is not in Discrete({count}): it must be one integer"
-        ) from None
+    number = action if type(action) is int else _integer(action)
+    if number is None:
+        raise TypeError(f"action {action!r} is not in Discrete({count}): it must be one integer")
     if not 0 <= number < count:
         raise ValueError(f"action {action!r} is not in Discrete({count})")
     return number
+
+
+def _integer(action: Any) -> int | None:
+    """Return an integer that is not Python's own, or None if it is none."""
+    if isinstance(action, np.integer):
+        return int(action)
+    # A tensor of one number has an index even if it has axes, or if it is a boolean.
+    if getattr(action, "shape", ()) != () or "bool" in str(getattr(action, "dtype", type(action))):
+        return None
+    try:
+        return operator.index(action)
+    except TypeError:
+        return None
 
 
 def read_box(action: Any) -> tuple[float, float]:

@@ -20,6 +20,7 @@ from .interface import (
     action_space,
     check_options,
     check_render_mode,
+    check_was_reset,
     frame_size,
     instance_metadata,
 )
@@ -136,7 +137,13 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         )
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return a frame, uint8 [height, width, 3], in render mode ``"rgb_array"``."""
+        """Return a frame, uint8 [height, width, 3], in render mode ``"rgb_array"``.
+
+        Raises:
+            gymnasium.error.ResetNeeded: there is a render mode, and there was no reset yet.
+        """
+        if self.render_mode is not None:
+            check_was_reset(self._batch.worlds, "render()")
         if self.render_mode == "rgb_array":
             # Imported on demand: playing without pictures needs none of the drawing kernels.
             from .draw.picture import draw_world
@@ -217,8 +224,10 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
 
         Raises:
             ValueError: the actions are continuous.
+            gymnasium.error.ResetNeeded: there was no reset yet.
         """
         batch = self._batch
+        check_was_reset(batch.worlds, "action_masks()")
         masks: NDArray[np.bool_] = action_masks(self.config, batch.worlds, batch.rules)[0]
         return masks
 

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .interface import check_was_reset
+
 if TYPE_CHECKING:
     from .batch.batch import Batch
 
@@ -12,7 +14,8 @@ if TYPE_CHECKING:
 class Emulator:
     """The part of the Arcade Learning Environment's interface that wrappers use, and its names.
 
-    Gymnasium's `AtariPreprocessing` and stable-baselines3's `AtariWrapper` work with it.
+    Gymnasium's `AtariPreprocessing` and stable-baselines3's `AtariWrapper` work with it. Before the
+    first reset there is no picture (`gymnasium.error.ResetNeeded`).
     """
 
     def __init__(self, batch: "Batch") -> None:
@@ -43,6 +46,7 @@ class Emulator:
         from .draw.picture import draw_world
 
         batch = self._batch
+        check_was_reset(batch.worlds, "picture")
         height, width = batch.config.picture_size if buffer is None else buffer.shape[:2]
         picture = draw_world(batch.worlds, batch.rules, 0, height, width, channels)
         picture = picture[:, :, 0] if channels == 1 else picture

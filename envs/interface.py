@@ -1,17 +1,20 @@
 """What the single and the vector environment share: action space, metadata, spec and checks."""
 
+from collections.abc import Mapping, Sequence
 from copy import copy
 from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
+from gymnasium.error import ResetNeeded
 
 from .actions import COMMANDS
-from .checks import check_integer
+from .checks import check_boolean, check_integer
 from .config import MAX_SIZE, Config, plain
 from .levels.starts import START_OPTIONS
 from .rules import TICKS_PER_SECOND
+from .state import Worlds
 
 RENDER_MODES = ("rgb_array", "human")
 METADATA: dict[str, Any] = {
@@ -62,11 +65,12 @@ def frame_size(render_size: Any) -> tuple[int, ...]:
     """
     if render_size is None:
         return ()
-    sizes = (render_size,) if isinstance(render_size, int | np.integer) else tuple(render_size)
-    if len(sizes) > 2:
-        raise ValueError(
-            f"render_size must be None, a height or (height, width); got {render_size!r}"
-        )
+    sizes = (render_size,) if isinstance(render_size, int | np.integer) else render_size
+    message = f"render_size must be None, a height or (height, width); got {render_size!r}"
+    if isinstance(sizes, str) or not isinstance(sizes, Sequence):
+        raise TypeError(message)
+    if sizes is render_size and len(sizes) != 2:
+        raise ValueError(message)
     for size in sizes:
         check_integer("render_size", size, 1, MAX_SIZE)
     return tuple(map(int, sizes))
@@ -78,6 +82,32 @@ def check_render_mode(render_mode: str | None, legal: tuple[str, ...]) -> None:
         raise ValueError(f"render_mode must be None or one of {legal}; got {render_mode!r}")
 
 
+def check_was_reset(worlds: Worlds, call: str) -> None:
+    """Raise a ResetNeeded if a world was never reset, before a call that shows it."""
+    never = np.flatnonzero(worlds["round_number"] == 0)[:8].tolist()
+    if never:
+        which = f": worlds {never} had none" if len(worlds) > 1 else ""
+        raise ResetNeeded(f"call reset() before the first {call}{which}")
+
+
+def check_attribute(name: str, value: Any, render_modes: tuple[str, ...]) -> None:
+    """Check that an attribute of a vector environment may be set to a value.
+
+    Raises:
+        AttributeError: the environment would not be what it says any more.
+        TypeError, ValueError: the value is illegal.
+    """
+    if name == "render_mode":
+        check_render_mode(value, render_modes)
+    elif name == "copy":
+        check_boolean("copy", value)
+    else:
+        raise AttributeError(
+            f"{name!r} of a vector environment can't be set: 'render_mode' and 'copy' can, and "
+            "names that it does not have"
+        )
+
+
 def check_limit(max_episode_steps: int | None, config: Config) -> None:
     """Raise a ValueError if a limit would truncate earlier than the configuration's own."""
     if max_episode_steps is not None and max_episode_steps < config.max_decisions:
@@ -87,10 +117,27 @@ def check_limit(max_episode_steps: int | None, config: Config) -> None:
         )
 
 
-def check_options(options: dict[str, Any] | None) -> None:
-    """Raise a ValueError if a reset option is unknown."""
-    known = (*START_OPTIONS, "reset_mask")
-    unknown = sorted(map(str, set(options or {}) - set(known)))
+def check_options(options: Any, *others: str) -> None:
+    """Check that the options of a reset are known.
+
+    Args:
+        options: of the reset; None: there are none.
+        others: legal ones besides `START_OPTIONS`.
+
+    Raises:
+        TypeError: they are no dictionary.
+        ValueError: one is unknown.
+    """
+    if options is None:
+        return
+    if not isinstance(options, Mapping):
+        raise TypeError(f"options must be None or a dictionary; got {options!r}")
+    known = (*START_OPTIONS, *others)
+    unknown = sorted(map(str, set(options) - set(known)))
+    if unknown == ["reset_mask"]:
+        raise ValueError(
+            "options['reset_mask'] is for vector environments; a single one has one game to reset"
+        )
     if unknown:
         near = get_close_matches(unknown[0], known, 1)
         hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"

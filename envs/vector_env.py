@@ -12,15 +12,17 @@ from .actions import action_meanings
 from .batch.batch import Autoreset, Batch
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .batch.stepping import tabulate_outcomes
-from .checks import check_integer, check_seeds
+from .checks import check_boolean, check_integer, check_seeds
 from .config import Config
 from .hints import BATCH_KEYWORDS
 from .interface import (
     SpecWithLimit,
     action_space,
+    check_attribute,
     check_limit,
     check_options,
     check_render_mode,
+    check_was_reset,
     frame_size,
     instance_metadata,
 )
@@ -89,8 +91,9 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
     ) -> None:
         check_render_mode(render_mode, _RENDER_MODES)
         check_integer("num_envs", num_envs, 1, MOST_WORLDS)
-        if threads is not None and threads < 1:
-            raise ValueError(f"threads must be None or at least 1; got {threads!r}")
+        if threads is not None:
+            check_integer("threads, if it is not None,", threads, 1, MOST_WORLDS)
+        check_boolean("copy", copy)
         self.config = Config.from_keywords(keywords, ("num_envs", *BATCH_KEYWORDS))
         check_limit(max_episode_steps, self.config)
         self.num_envs = num_envs
@@ -120,8 +123,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
     ) -> tuple[Observations, dict[str, Any]]:
         """Begin an episode in every world, or in those of ``options["reset_mask"]`` (bool [n]).
 
-        An int seeds world ``i`` with ``seed + i``; a sequence gives each world's own seed; None
-        goes on with each world's generator. The options ``"level"``, ``"seed"`` and
+        An int, at most 2^64 - n, seeds world ``i`` with ``seed + i``; a sequence gives each world's
+        own seed; None goes on with each world's generator. The options ``"level"``, ``"seed"`` and
         ``"difficulty"`` say how this and the following episodes of those worlds begin, see
         `arkanoid.envs.levels.starts`. They stay in force until the world gets a seed or other
         options. With `episodic_life` a world's game goes on after the loss of a life, unless it
@@ -130,7 +133,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         Raises:
             TypeError, ValueError: a seed or an option is illegal; the games are as they were then.
         """
-        check_options(options)
+        check_options(options, "reset_mask")
         seeds = check_seeds(seed, self.num_envs)
         mask = self._everywhere
         if options and "reset_mask" in options:
@@ -175,9 +178,14 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         return self._observations(), outcomes["reward"].copy(), terminated, truncated, infos
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """Return a frame of each world, uint8 [height, width, 3]."""
+        """Return a frame of each world, uint8 [height, width, 3]; None without a render mode.
+
+        Raises:
+            gymnasium.error.ResetNeeded: a world was never reset.
+        """
         if self.render_mode is None:
             return None
+        check_was_reset(self._batch.worlds, "render()")
         # Imported on demand: playing without pictures needs none of the drawing kernels.
         from .draw.picture import draw_world
 
@@ -192,7 +200,9 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         Raises:
             ValueError: the actions are continuous.
+            gymnasium.error.ResetNeeded: a world was never reset.
         """
+        check_was_reset(self._batch.worlds, "action_masks()")
         return action_masks(self.config, self._batch.worlds, self._batch.rules)
 
     def get_action_meanings(self) -> list[str]:
@@ -232,11 +242,14 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
     def set_attr(self, name: str, values: Any) -> None:
         """Set an attribute of each world: a list or tuple with one value per world, or one for all.
 
-        An attribute of this environment is set for all worlds at once. Any other one is only kept
-        for `get_attr`.
+        Of this environment's own attributes, ``render_mode`` and ``copy`` can be set, for all
+        worlds at once. A name that it does not have is only kept for `get_attr`.
 
         Raises:
-            ValueError: the number of values is wrong, or they differ where all worlds share one.
+            AttributeError: it is another attribute of this environment.
+            TypeError: ``copy`` is no boolean.
+            ValueError: the number of values is wrong, they differ where all worlds share one, or
+                the render mode is illegal.
         """
         if not isinstance(values, list | tuple):
             values = [values] * self.num_envs
@@ -244,10 +257,11 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             raise ValueError(f"{len(values)} values for {self.num_envs} worlds; give one for each")
         if not hasattr(self, name):
             self._attributes[name] = tuple(values)
-        elif any(value != values[0] for value in values):
+            return
+        check_attribute(name, values[0], _RENDER_MODES)
+        if any(value != values[0] for value in values):
             raise ValueError(f"all worlds share {name!r}: give one value; got {values!r}")
-        else:
-            setattr(self, name, values[0])
+        setattr(self, name, values[0])
 
     @property
     def state(self) -> Worlds:

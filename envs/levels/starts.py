@@ -1,5 +1,6 @@
 """How episodes begin: the options of `reset`, on which curricula are built."""
 
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from .plan import LevelPlan, check_boss, level_table
 # The options of `reset`, and what each means.
 START_OPTIONS = {
     "level": "the first level: its name, the path of its file, or the number of a round",
-    "seed": "the first level: the one that the generator makes of this seed",
+    "seed": "the first level: the one that the generator makes of this seed, from 0 to 2^63 - 1",
     "difficulty": "the difficulty of all generated levels, in [0, 1]",
 }
 MAX_ROUND = 10**9
@@ -45,6 +46,8 @@ def read_start(options: dict[str, Any], config: Config, plan: LevelPlan) -> dict
         TypeError, ValueError: an option has an illegal value.
     """
     level, seed = options.get("level"), options.get("seed")
+    if isinstance(level, PathLike):
+        level = fspath(level)
     if level is not None and seed is not None:
         raise ValueError(f"give reset either a level or a seed; got both, {level!r} and {seed!r}")
     fields: dict[str, Any] = {}

@@ -28,12 +28,25 @@ def test_torchs_tensors_are_actions():
     assert observed(env, torch.tensor([0.5, 1.0])) == observed(env, [0.5, 1.0])
 
 
-@pytest.mark.parametrize("action", [[1], np.array([1]), 1.0, np.float32(1), None, "1", {}])
+@pytest.mark.parametrize(
+    "action",
+    [[1], np.array([1]), True, np.True_, np.array(True), 1.0, np.float32(1), None, "1", {}],
+)
 def test_what_is_no_integer_is_refused_and_the_space_named(action):
     env = ArkanoidEnv()
     env.reset(seed=0)
     with pytest.raises(TypeError, match=r"is not in Discrete\(6\): it must be one integer"):
         env.step(action)
+
+
+def test_a_tensor_with_an_axis_is_refused_as_an_array_is():
+    """torch.tensor([1]) was taken, and np.array([1]) was not."""
+    torch = pytest.importorskip("torch")
+    env = ArkanoidEnv()
+    env.reset(seed=0)
+    for action in (torch.tensor([1]), torch.tensor([[1]]), torch.tensor(True), torch.tensor(1.0)):
+        with pytest.raises(TypeError, match=r"is not in Discrete\(6\): it must be one integer"):
+            env.step(action)
 
 
 @pytest.mark.parametrize("action", [-1, 3, np.int64(7)])

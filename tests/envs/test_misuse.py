@@ -65,6 +65,108 @@ def test_the_adapter_is_not_stepped_before_its_reset(native):
     worlds.step(np.zeros(2, int))
 
 
+def test_what_was_never_reset_is_not_shown():
+    """Frames of it were pictures of no game, and masks those of a paddle without a width."""
+    single = ArkanoidEnv(render_mode="rgb_array")
+    assert single.ale.lives() == 0
+    shows = [single.render, single.action_masks, single.clone().render]
+    shows += [single.ale.getScreenRGB, single.ale.getScreenGrayscale]
+    shows += [ArkanoidEnv(render_mode="human").render]
+    native = ArkanoidVectorEnv(2, render_mode="rgb_array", autoreset_mode="SameStep")
+    sync = SyncVectorEnv(
+        [lambda: ArkanoidEnv(render_mode="rgb_array")] * 2, autoreset_mode=AutoresetMode.SAME_STEP
+    )
+    for env in (native, sync):
+        adapted = GymnasiumVecEnv(env)
+        shows += [lambda env=env: env.call("render"), adapted.get_images, adapted.render]
+        shows += [lambda env=adapted: env.env_method("action_masks")]
+    for show in (*shows, native.render, native.action_masks):
+        with pytest.raises(ResetNeeded, match=r"call reset\(\) before the first"):
+            show()
+    native.reset(seed=0, options={"reset_mask": np.array([True, False])})
+    with pytest.raises(ResetNeeded, match=r"worlds \[1\] had none"):
+        native.render()
+    single.reset(seed=0)
+    for env in (native, sync):
+        env.reset(seed=0)
+    for show in shows[:2]:
+        assert show() is not None
+    assert len(native.render()) == 2
+    assert ArkanoidVectorEnv(2).render() is None
+
+
+# Arguments.
+
+NO_OPTIONS = [
+    ([], TypeError, "options must be None or a dictionary"),
+    ("level", TypeError, "options must be None or a dictionary"),
+    (0, TypeError, "options must be None or a dictionary"),
+    ({"levle": 1}, ValueError, "unknown reset option 'levle'; did you mean 'level'"),
+    ({1: 1}, ValueError, "unknown reset option '1'"),
+    ({"level": 1.0}, TypeError, "options.'level'.,.* must be an integer"),
+    ({"level": True}, TypeError, "options.'level'.,.* must be an integer"),
+    ({"level": ["vault"]}, TypeError, "options.'level'.,.* must be an integer"),
+    ({"level": 0}, ValueError, "options.'level'.,.* must be between"),
+    ({"level": "vualt"}, ValueError, "Did you mean 'vault'"),
+    ({"level": ""}, ValueError, "level"),
+    ({"level": 1, "seed": 1}, ValueError, "either a level or a seed"),
+    ({"seed": "1"}, TypeError, "options.'seed'. must be an integer"),
+    ({"seed": 1.0}, TypeError, "options.'seed'. must be an integer"),
+    ({"seed": -1}, ValueError, "options.'seed'. must be between"),
+    ({"seed": 2**63}, ValueError, "options.'seed'. must be between 0 and 9223372036854775807"),
+    ({"difficulty": "1"}, TypeError, "options.'difficulty'. must be a number"),
+    ({"difficulty": True}, TypeError, "options.'difficulty'. must be a number"),
+    ({"difficulty": float("nan")}, ValueError, "options.'difficulty'. must be between"),
+]
+
+
+@pytest.mark.parametrize(("options", "error", "said"), NO_OPTIONS, ids=str)
+def test_what_is_no_option_is_refused_and_changes_nothing(options, error, said):
+    """An empty list was taken as no options."""
+    for env in (ArkanoidEnv(), ArkanoidVectorEnv(2)):
+        env.reset(seed=0)
+        before = env.snapshot()
+        with pytest.raises(error, match=said):
+            env.reset(options=options)
+        assert env.snapshot() == before
+
+
+def test_a_single_game_takes_no_mask():
+    """It was taken, and did nothing."""
+    env = ArkanoidEnv()
+    with pytest.raises(ValueError, match=r"reset_mask'. is for vector environments"):
+        env.reset(options={"reset_mask": np.array([True])})
+    with pytest.raises(ValueError, match=r"known: level, seed, difficulty$"):
+        env.reset(options={"xyz": 1})
+
+
+def test_the_largest_seed_of_a_level_and_a_path_are_legal(tmp_path):
+    path = tmp_path / "one.txt"
+    path.write_text("name: One\n\n.....w.....\n")
+    for env in (ArkanoidEnv(), ArkanoidVectorEnv(2)):
+        env.reset(seed=0, options={"seed": 2**63 - 1})
+        env.reset(seed=0, options={"level": path})
+        assert (env.state["bricks_left"] == 1).all()
+
+
+@pytest.mark.parametrize(
+    "size", [512.0, "512", b"512", (), (512,), (1, 2, 3), (1.0, 2), True, {1: 2}, (0, 5)], ids=repr
+)
+def test_what_is_no_size_of_frames_is_refused(size):
+    """512.0 was told that a float is not iterable, and () was taken as the default."""
+    for make in (ArkanoidEnv, lambda **keywords: ArkanoidVectorEnv(2, **keywords)):
+        with pytest.raises((TypeError, ValueError), match="render_size must be"):
+            make(render_mode="rgb_array", render_size=size)
+
+
+@pytest.mark.parametrize(
+    ("keyword", "value"), [("threads", 1.5), ("threads", "2"), ("threads", True), ("copy", "no")]
+)
+def test_keywords_of_the_batch_are_checked(keyword, value):
+    with pytest.raises(TypeError, match=f"{keyword}.* must be"):
+        ArkanoidVectorEnv(2, **{keyword: value})
+
+
 def test_no_loop_waits_for_a_healthy_generator_or_a_free_place():
     """With a generator that always gives 0 a capsule was drawn forever, deaf to Ctrl-C."""
     run_program(

@@ -66,6 +66,37 @@ def test_attributes_can_be_set(pair):
         native.get_attr("no_such")
 
 
+OWN = ["num_envs", "config", "action_space", "single_action_space", "observation_space"]
+OWN += ["single_observation_space", "autoreset_mode", "spec", "metadata", "layout", "state"]
+OWN += ["step", "reset", "closed", "np_random", "unwrapped", "_batch"]
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_what_the_environment_says_of_itself_can_not_be_set(name):
+    """num_envs=7 was taken, and the next step raised an error about shapes."""
+    env = ArkanoidVectorEnv(2)
+    before = env.get_attr("num_envs"), env.config, env.metadata
+    for values in (7, [7, 7], [None, 7]):
+        with pytest.raises(
+            AttributeError, match=f"'{name}' of a vector .*'render_mode' and 'copy'"
+        ):
+            env.set_attr(name, values)
+    assert (env.get_attr("num_envs"), env.config, env.metadata) == before
+
+
+def test_what_can_be_set_is_checked():
+    env = ArkanoidVectorEnv(2)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match="render_mode must be None or one of"):
+        env.set_attr("render_mode", "human")
+    with pytest.raises(TypeError, match="copy must be True or False"):
+        env.set_attr("copy", "no")
+    env.set_attr("render_mode", "rgb_array")
+    assert len(env.render()) == 2
+    env.set_attr("copy", False)
+    assert np.shares_memory(env.step([0, 0])[0], env.step([0, 0])[0])
+
+
 def test_the_metadata_names_no_window():
     """A vector environment refuses ``"human"``, and its metadata listed it."""
     env = ArkanoidVectorEnv(2)
