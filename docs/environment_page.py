@@ -293,9 +293,9 @@ All bricks of the first round stand, and the ball lies on the middle of the padd
 after {rules.SERVE_TICKS} ticks it serves itself.
 
 `reset(seed=..., options=...)` determines everything that follows: with a seed, the game forgets the
-options of earlier resets. A seed is an integer from 0 to 2^64 - 1. In a vector environment an integer
-gives game `i` the seed `seed + i`, and is at most 2^64 - `num_envs`; a list gives each game its own.
-A reset without a seed continues the random numbers. The options are:
+options of earlier resets. A seed is an integer from 0 to 2^64 - 1. In a vector environment an
+integer, at most 2^64 - `num_envs`, gives game `i` the seed `seed + i`; a list gives each game its
+own. A reset without a seed continues the random numbers. The options are:
 
 {meanings("option", START_OPTIONS)}
 
