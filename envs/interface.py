@@ -1,5 +1,6 @@
 """What the single and the vector environment share: action space, metadata, spec and checks."""
 
+import sys
 from collections.abc import Mapping, Sequence
 from copy import copy
 from difflib import get_close_matches
@@ -109,8 +110,16 @@ def check_attribute(name: str, value: Any, render_modes: tuple[str, ...]) -> Non
 
 
 def check_limit(max_episode_steps: int | None, config: Config) -> None:
-    """Raise a ValueError if a limit would truncate earlier than the configuration's own."""
-    if max_episode_steps is not None and max_episode_steps < config.max_decisions:
+    """Check that a limit does not truncate earlier than the configuration's own.
+
+    Raises:
+        TypeError: it is no integer.
+        ValueError: it does.
+    """
+    if max_episode_steps is None:
+        return
+    check_integer("max_episode_steps", max_episode_steps, 1, sys.maxsize)
+    if max_episode_steps < config.max_decisions:
         raise ValueError(
             f"max_episode_steps={max_episode_steps} is for Gymnasium's own TimeLimit around single "
             f"environments: here use max_decisions={max_episode_steps}"

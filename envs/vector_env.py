@@ -283,7 +283,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
         Raises:
             RuntimeError: a world was never reset.
-            ValueError: there is no such world.
+            TypeError, ValueError: there is no such world.
         """
         return take_snapshot(self._batch, world)
 
@@ -327,7 +327,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """Begin to record the games of a world, for replays, each from its beginning.
 
         Raises:
-            ValueError: there is no such world.
+            TypeError, ValueError: there is no such world.
         """
         # Imported on demand: most play is not recorded.
         from .batch.recorder import Recorder

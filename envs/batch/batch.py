@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...physics.kernels.threads import Threads
 from ..actions import BOX, COMMANDS, decode_actions, decode_velocities
+from ..checks import check_integer
 from ..config import Config
 from ..game.random import seed_state
 from ..game.rulebook import make_rules
@@ -161,10 +162,9 @@ class Batch:
             waits |= self.worlds["done"] != 0
         self._waits = bool(waits.any())
 
-    def check_world(self, index: int | None) -> None:
-        """Raise a ValueError if there is no world with this index; None is legal."""
-        if index is not None and not 0 <= index < self.num_worlds:
-            raise ValueError(f"world must be between 0 and {self.num_worlds - 1}; got {index!r}")
+    def check_world(self, index: int) -> None:
+        """Raise a TypeError for what is no index, a ValueError if it is of no world."""
+        check_integer("world", index, 0, self.num_worlds - 1)
 
     def seed(self, index: int, seed: int) -> None:
         """Seed one world's generator."""

@@ -78,7 +78,7 @@ class Recorder:
         finished: the latest recorded game that is over, or None.
 
     Raises:
-        ValueError: there is no such world.
+        TypeError, ValueError: there is no such world.
     """
 
     def __init__(self, batch: Batch, world: int) -> None:

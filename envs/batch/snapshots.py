@@ -29,9 +29,10 @@ def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
 
     Raises:
         RuntimeError: a world was never reset, and has no state.
-        ValueError: there is no such world.
+        TypeError, ValueError: there is no such world.
     """
-    batch.check_world(world)
+    if world is not None:
+        batch.check_world(world)
     share = slice(None) if world is None else slice(world, world + 1)
     worlds = batch.worlds[share]
     if not batch.seeded[share].all():

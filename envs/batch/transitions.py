@@ -46,9 +46,8 @@ def replay_transitions(
         replay: the game, or the path of its file.
         actions: the form of the actions, see `Config`; None is that in which the game was played.
         **keywords: how the game is seen, whatever was seen when it was recorded: ``observation``,
-            ``size``, ``grey``, ``stack``, ``channels``. And how it is cut: with
-            ``episodic_life=True`` each lost life ends an episode, as it does in an environment
-            with this keyword.
+            ``size``, ``grey``, ``stack``, ``channels``; and with ``episodic_life=True`` each lost
+            life ends an episode, as it does in an environment.
 
     Raises:
         OSError, ValueError, ReplayDivergedError: as `play_replay`.
@@ -59,7 +58,7 @@ def replay_transitions(
     others = sorted(set(keywords) - set(SEEN))
     if others:
         raise ValueError(f"{others[0]!r} does not say how a game is seen: {', '.join(SEEN)} do")
-    encoded = encode_commands(actions or game.config.actions, game.commands)
+    encoded = encode_commands(game.config.actions if actions is None else actions, game.commands)
     return _transitions(replace(game, config=replace(game.config, **keywords)), encoded)
 
 
@@ -90,7 +89,7 @@ def encode_commands(actions: str, commands: NDArray[np.float64]) -> NDArray[Any]
     """
     if actions == "box":
         return commands.astype(np.float32)
-    if actions not in COMMANDS:
+    if not isinstance(actions, str) or actions not in COMMANDS:
         raise ValueError(f"actions must be box or one of {', '.join(COMMANDS)}; got {actions!r}")
     same = (commands[:, np.newaxis] == COMMANDS[actions]).all(axis=2)
     found = same.any(axis=1)

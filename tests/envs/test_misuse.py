@@ -160,11 +160,30 @@ def test_what_is_no_size_of_frames_is_refused(size):
 
 
 @pytest.mark.parametrize(
-    ("keyword", "value"), [("threads", 1.5), ("threads", "2"), ("threads", True), ("copy", "no")]
+    ("keyword", "value"),
+    [
+        ("threads", 1.5),
+        ("threads", "2"),
+        ("threads", True),
+        ("copy", "no"),
+        ("max_episode_steps", "5"),
+    ],
 )
 def test_keywords_of_the_batch_are_checked(keyword, value):
     with pytest.raises(TypeError, match=f"{keyword}.* must be"):
         ArkanoidVectorEnv(2, **{keyword: value})
+
+
+@pytest.mark.parametrize("world", ["0", 1.0, True, [1]], ids=repr)
+def test_what_is_no_index_of_a_world_is_refused(world):
+    """Errors spoke of slices, and recording the world None of an ambiguous array."""
+    env = ArkanoidVectorEnv(2)
+    env.reset(seed=0)
+    for call in (env.snapshot, env.record):
+        with pytest.raises(TypeError, match="world must be an integer"):
+            call(world)
+    with pytest.raises(TypeError, match="world must be an integer"):
+        env.record(None)
 
 
 def test_no_loop_waits_for_a_healthy_generator_or_a_free_place():

@@ -144,8 +144,9 @@ def test_what_a_form_of_actions_lacks_is_named():
     replay, _ = played({}, "box", max_decisions=5)
     with pytest.raises(ValueError, match=r"'discrete6' has no action for velocity and fire .* 0"):
         replay_transitions(replay, "discrete6")
-    with pytest.raises(ValueError, match="actions must be box or one of"):
-        replay_transitions(replay, "buttons")
+    for actions in ("buttons", "", []):
+        with pytest.raises(ValueError, match="actions must be box or one of"):
+            replay_transitions(replay, actions)
 
 
 def test_only_what_is_seen_can_be_chosen():
