@@ -227,7 +227,6 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             gymnasium.error.ResetNeeded: there was no reset yet.
         """
         batch = self._batch
-        check_was_reset(batch.worlds, "action_masks()")
         masks: NDArray[np.bool_] = action_masks(self.config, batch.worlds, batch.rules)[0]
         return masks
 

@@ -7,6 +7,7 @@ from ..physics.kernels import inlined, inner, kernel
 from ..physics.pairs.lattice import cell_centre
 from .actions import COMMANDS
 from .config import Config
+from .interface import check_was_reset
 from .rules import (
     BALL_RADIUS,
     BEAM_HEIGHT,
@@ -62,12 +63,14 @@ def action_masks(config: Config, worlds: Worlds, rules: SharedRules) -> NDArray[
 
     Raises:
         ValueError: the actions are continuous.
+        ResetNeeded: a world was never reset.
     """
     table = COMMANDS.get(config.actions)
     if table is None:
         raise ValueError(
             f"actions={config.actions!r} are continuous and have no masks: use 'discrete6'"
         )
+    check_was_reset(worlds, "action_masks()")
     useful = np.empty((len(worlds), 3), np.bool_)
     find_useful(worlds, rules, useful)
     masks = np.ones((len(worlds), len(table)), np.bool_)

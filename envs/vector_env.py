@@ -202,7 +202,6 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             ValueError: the actions are continuous.
             gymnasium.error.ResetNeeded: a world was never reset.
         """
-        check_was_reset(self._batch.worlds, "action_masks()")
         return action_masks(self.config, self._batch.worlds, self._batch.rules)
 
     def get_action_meanings(self) -> list[str]:
