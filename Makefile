@@ -49,6 +49,7 @@ format: $(VENV)/dev  ## Format the sources, and correct what can be corrected au
 	$(BIN)/ruff format .
 
 docs: $(VENV)/docs  ## Build the documentation's site, build/docs/index.html
+	rm -rf build/docs # Sphinx keeps old pages
 	$(BIN)/sphinx-build -W --keep-going -q -E -c docs/site -d build/doctrees docs build/docs
 
 check: lint types docs test  ## All of lint, types, docs and test

@@ -6,9 +6,8 @@ runs is imported: playing by hand needs none of the packages for training.
 """
 
 import argparse
-import io
+import contextlib
 import itertools
-import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -18,6 +17,8 @@ from gymnasium.error import DependencyNotInstalled
 
 from .. import __version__
 from .experiment.errors import SettingsError
+from .experiment.files import cause, printable
+from .output import OutputError, checked_output
 
 # Each subcommand, which is its module's name, and what it does.
 COMMANDS = {
@@ -61,13 +62,20 @@ _EXTRAS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status.
 
-    0: done; 1: an extra is missing, or a replay plays another game than was recorded; 2: the
-    user's mistake; 130: Ctrl-C.
+    0: done; 1: an extra is missing, a replay plays another game than was recorded, or the reader
+    of the output has ended; 2: the user's mistake, or the output cannot be written; 130: Ctrl-C.
     """
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        # A letter that the terminal or file cannot show must not cost the results.
-        sys.stdout.reconfigure(errors="replace")
-    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        with checked_output(sys.stdout):
+            return _try(list(sys.argv[1:] if argv is None else argv))
+    except OutputError as error:
+        if error.closed:  # as in `arkanoid levels | head`
+            return 1
+        return _fail(f"the output cannot be written: {cause(error.reason)}", 2)
+
+
+def _try(words: list[str]) -> int:
+    """Run the command line; tell its errors in a sentence, and return the exit status."""
     overrides: list[tuple[str, str]] = []
     if not words or words[0] not in _WITHOUT_SETTINGS:
         words, overrides = split_overrides(words)
@@ -81,11 +89,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _fail(f"not enough memory: {error}".removesuffix(": "), 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
-    except BrokenPipeError:
-        # Whoever read the output has ended, as in `arkanoid levels | head`. Python would complain
-        # once more when it writes the rest.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
+    except OSError as error:  # of a file that no command looks after
+        return _fail(f"{error.filename or 'error of the system'}: {cause(error)}", 2)
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package not in _EXTRAS:
@@ -142,10 +147,7 @@ def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
 
 
 def _fail(message: str, status: int) -> int:
-    # In one line, and without what a terminal would obey: it may quote a file of somebody else's.
-    shown = "".join(
-        letter if letter.isprintable() else f"\\x{ord(letter):02x}"
-        for letter in " ".join(message.split())
-    )
-    print(f"arkanoid: error: {shown}", file=sys.stderr)
+    with contextlib.suppress(OSError):  # where this cannot be written, the status tells
+        # The message may quote a file of somebody else's.
+        print(f"arkanoid: error: {printable(message)}", file=sys.stderr)
     return status

@@ -1,6 +1,5 @@
 """Checks of users' values; each message names the value and says what is legal."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -33,7 +32,7 @@ def check_number(name: str, value: object, low: float, high: float) -> None:
     """Raise a TypeError unless a value is a number, a ValueError unless it is in [low, high]."""
     if isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer):
         raise TypeError(f"{name} must be a number; got {value!r}")
-    if not (math.isfinite(value) and low <= value <= high):
+    if not low <= value <= high:  # NaN is outside, too
         raise ValueError(f"{name} must be between {low:g} and {high:g}; got {value!r}")
 
 

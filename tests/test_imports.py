@@ -44,7 +44,7 @@ ORDER = {
         draw
         game
         levels
-        config state actions checks hints rules ranges atomic
+        config state actions checks hints rules ranges atomic reading
     """,
     "agents": """
         cli
@@ -53,7 +53,7 @@ ORDER = {
         learn
         measure
         experiment pretrained
-        adapter
+        adapter output
     """,
 }
 FILES = [file for package in ORDER for file in sorted((ROOT / package).rglob("*.py"))]

@@ -6,11 +6,14 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
-from ..experiment.runs import ModelFile
-from ..experiment.settings import Experiment
 from .arguments import add_trust
+
+if TYPE_CHECKING:
+    from ..experiment.runs import ModelFile
+    from ..experiment.settings import Experiment
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,6 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Evaluate, print and draw; return the exit status."""
+    from ..experiment.runs import ModelFile
+
     models = [ModelFile.find(name, arguments.trust) for name in arguments.models or [None]]
     experiment = models[0].run.experiment(overrides)
     agents = group_by_experiment(models, overrides)
@@ -61,8 +66,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
 
 def group_by_experiment(
-    models: Sequence[ModelFile], overrides: list[tuple[str, str]]
-) -> dict[str, list[ModelFile]]:
+    models: Sequence["ModelFile"], overrides: list[tuple[str, str]]
+) -> dict[str, list["ModelFile"]]:
     """Return the models by agents; models of one agent differ in nothing but their seeds.
 
     A single agent is called ``agent``, several get their experiments' names. Raises `SettingsError`

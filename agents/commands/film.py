@@ -5,7 +5,6 @@ import math
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
-from ..experiment.runs import ModelFile
 from .arguments import add_level, add_model
 
 
@@ -24,6 +23,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Write the film; return the exit status."""
+    from ..experiment.runs import ModelFile
+
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.run.experiment(overrides)
     out = Path(arguments.out)

@@ -52,8 +52,6 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         else:
             print(list_levels())
             print("\nto draw one: arkanoid levels NAME; a generated one: arkanoid levels seed:7")
-    except BrokenPipeError:
-        raise
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
+from ..experiment.files import printable
 from ..show.film import RATES, write_film
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     except (TypeError, ValueError) as error:
         raise SettingsError(str(error)) from None
     except ReplayDivergedError as error:
-        print(f"arkanoid: error: {arguments.file}: {error}", file=sys.stderr)
+        print(f"arkanoid: error: {printable(f'{arguments.file}: {error}')}", file=sys.stderr)
         return 1
 
 

@@ -4,7 +4,6 @@ import argparse
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
-from ..experiment.runs import ModelFile
 from .arguments import add_trust
 from .evaluate import group_by_experiment
 
@@ -29,6 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Measure and write; return the exit status."""
+    from ..experiment.runs import ModelFile
+
     out = Path(arguments.out)
     if out.suffix not in (".html", ".md"):
         raise SettingsError(f"{out}: a report's name must end in .html or .md")

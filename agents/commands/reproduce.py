@@ -1,11 +1,10 @@
 """`arkanoid reproduce RUN`: trains a run again and compares the weights, bit for bit."""
 
 import argparse
-from dataclasses import replace
 from typing import Any
 
 from ..experiment.errors import SettingsError
-from ..experiment.runs import RunFolder
+from ..experiment.files import printable
 from .arguments import add_trust
 
 
@@ -20,15 +19,14 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Train again beside the run; return 0 if the weights are the same, else 1."""
     if overrides:
         raise SettingsError("a run is reproduced with its own settings: give no others")
+    from ..experiment.runs import RunFolder
+
     folder = RunFolder.of(arguments.run, arguments.trust)
     expected = folder.read_notes().get("weights")
     if expected is None:
         raise SettingsError(f"{folder.path}: the run has not ended; there is nothing to compare")
-    experiment = replace(
-        folder.experiment(),
-        name=f"{folder.path.resolve().name}-again",
-        output=str(folder.path.resolve().parent),
-    )
+    path = folder.path.resolve()
+    experiment = folder.experiment([("name", f"{path.name}-again"), ("output", str(path.parent))])
     from ..learn.training import INTERRUPTED, train
 
     again = RunFolder.create(experiment)
@@ -36,7 +34,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if train(experiment, again) == INTERRUPTED:
         return 130
     notes = again.read_notes()
-    print(f"weights there  {expected}\nweights here   {notes['weights']}")
+    print(f"weights there  {printable(expected)}\nweights here   {notes['weights']}")
     if notes["weights"] == expected:
         print("the same, bit for bit")
         return 0
@@ -51,5 +49,6 @@ def _differences(there: dict[str, Any], here: dict[str, Any]) -> list[str]:
         one, other = there.get(table) or {}, here.get(table) or {}
         for key in sorted({*one, *other}):
             if one.get(key) != other.get(key):
-                lines.append(f"{table}.{key}: {one.get(key)!r} there, {other.get(key)!r} here")
+                line = f"{table}.{key}: {one.get(key)!r} there, {other.get(key)!r} here"
+                lines.append(printable(line))
     return lines or ["versions, commit and hardware are the same: please report this"]

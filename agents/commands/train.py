@@ -3,15 +3,17 @@
 import argparse
 import json
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
 from ..experiment.files import quoted
-from ..experiment.reading import describe_settings, packaged_configs
-from ..experiment.runs import ModelFile, RunFolder
-from ..experiment.settings import Experiment, load_experiment
-from ..experiment.worlds import make_worlds
+from ..experiment.packaged import packaged_configs
 from .arguments import add_trust
+
+if TYPE_CHECKING:
+    from ..experiment.runs import RunFolder
+    from ..experiment.settings import Experiment
 
 DEFAULT_CONFIG = "quick"
 
@@ -35,6 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Train, save, evaluate and film; return the exit status (130 after Ctrl-C)."""
+    from ..experiment.runs import RunFolder
+    from ..experiment.settings import load_experiment
+    from ..experiment.worlds import make_worlds
+
     folder = None
     if arguments.resume is not None:
         if arguments.config is not None or overrides:
@@ -62,8 +68,9 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     return 0
 
 
-def _show(experiment: Experiment, folder: RunFolder) -> None:
+def _show(experiment: "Experiment", folder: "RunFolder") -> None:
     """Measure the saved model, film it, and print the results and where everything is."""
+    from ..experiment.runs import ModelFile
     from ..learn.model import load_policy
     from ..measure.comparison import AGENT, as_json, as_tables, compare
     from ..show.frames import film_policy
@@ -84,6 +91,12 @@ def _show(experiment: Experiment, folder: RunFolder) -> None:
 
 
 def _settings_help() -> Iterator[str]:
+    try:
+        from ..experiment.reading import describe_settings
+        from ..experiment.settings import Experiment
+    except ModuleNotFoundError as error:
+        yield f"  they are shown here once the extra `train` is installed ({error.name} is missing)"
+        return
     for key, setting in describe_settings(Experiment).items():
         if setting.is_free:
             yield f"  --{key}.KEY  {setting.meaning}"

@@ -5,8 +5,6 @@ import sys
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
-from ..experiment.settings import load_experiment
-from ..learn.tuning import best_as_toml, load_space, open_study, search
 
 DEFAULT_SPACE = "ppo"
 DEFAULT_TRIALS = 30
@@ -34,6 +32,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Search and print the best; return the exit status."""
+    from ..experiment.settings import load_experiment
+    from ..learn.tuning import best_as_toml, load_space, open_study, search
+
     experiment = load_experiment(arguments.config, overrides)
     space = load_space(arguments.space)
     if not experiment.validation.every:

@@ -2,8 +2,6 @@
 
 import argparse
 
-from ..experiment.runs import ModelFile
-from ..experiment.settings import seeded
 from .arguments import add_level, add_model
 
 
@@ -19,6 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Show games until the window is closed; return the exit status."""
+    from ..experiment.runs import ModelFile
+    from ..experiment.settings import seeded
+
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.run.experiment(overrides)
     from ...envs.play.window import Window

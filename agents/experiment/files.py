@@ -1,4 +1,4 @@
-"""Files that may be too large, and paths and errors in words."""
+"""Paths, errors and other people's texts in words that can be shown."""
 
 import os
 import shlex
@@ -7,20 +7,27 @@ import sys
 from pathlib import Path
 
 
-def read_limited(path: Path, limit: int) -> bytes:
-    """Return a file's content; raise ValueError if it has more than ``limit`` bytes."""
-    with path.open("rb") as file:
-        content = file.read(limit + 1)
-    if len(content) > limit:
-        raise ValueError(f"it is larger than {limit:,} bytes")
-    return content
-
-
 def quoted(path: Path | str) -> str:
     """Return a path as one word of a shell's command line."""
     # A name that begins with a dash would be taken for an option.
     text = os.path.join(os.curdir, path) if str(path).startswith("-") else str(path)
     return subprocess.list2cmdline([text]) if sys.platform == "win32" else shlex.quote(text)
+
+
+def printable(text: str) -> str:
+    """Return a text in one line, and without what a terminal would obey."""
+    return "".join(
+        letter if letter.isprintable() else f"\\x{ord(letter):02x}"
+        for letter in " ".join(text.split())
+    )
+
+
+def shown(value: object) -> str:
+    """Return the beginning of a value in words, however long or deep it is."""
+    try:
+        return f"{value!r:.200}"
+    except (RecursionError, ValueError):  # an integer of thousands of digits
+        return f"a {type(value).__name__}"
 
 
 def cause(error: OSError) -> str:

@@ -8,23 +8,21 @@ import difflib
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
 
 import tomli_w
 from pydantic import TypeAdapter, ValidationError
 
-from ... import configs
 from ...envs.config import plain
+from ...envs.reading import read_limited
 from .errors import SettingsError
-from .files import read_limited
+from .files import shown
+from .packaged import CONFIG, packaged_configs, read_packaged
 
 T = TypeVar("T")
 
 COMMAND_LINE = "command line"
-# How the names of packaged experiments end.
-CONFIG = ".toml"
 _LARGEST_CONFIG = 2**20  # bytes
 
 _KINDS = {
@@ -168,21 +166,12 @@ def read_toml(config: str, suffix: str = CONFIG) -> tuple[str, dict[str, Any]]:
         raise SettingsError(f"{source}: not a TOML file: {error}") from None
 
 
-def packaged_configs(suffix: str = CONFIG) -> list[str]:
-    """Return the names of the configs, or of other TOML files, that come with the package."""
-    files = (file.name for file in resources.files(configs).iterdir())
-    names = (name.removesuffix(suffix) for name in files if name.endswith(suffix))
-    # A further dot in the name marks another kind of file.
-    return sorted(name for name in names if "." not in name)
-
-
 def _read_config(config: str, suffix: str) -> tuple[str, str]:
     """Return the name of a config for messages, and its text."""
     path = Path(config)
     try:
         if config in packaged_configs(suffix) and not path.is_file():
-            file = resources.files(configs) / f"{config}{suffix}"
-            return f"config {config!r}", file.read_text(encoding="utf-8")
+            return f"config {config!r}", read_packaged(config, suffix)
         return config, read_limited(path, _LARGEST_CONFIG).decode("utf-8-sig")
     except ValueError as error:
         raise SettingsError(f"{config}: not a TOML file: {error}") from None
@@ -255,4 +244,4 @@ def _unknown(key: str, known: Mapping[str, Setting], source: str) -> SettingsErr
 
 
 def _shown(value: Any) -> str:
-    return f"the text {value!r}" if isinstance(value, str) else repr(value)
+    return f"the text {shown(value)}" if isinstance(value, str) else shown(value)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from ...envs.atomic import remove_unfinished, write_atomically
+from ...envs.reading import read_limited
 from .. import pretrained
 from .errors import SettingsError
-from .files import cause, read_limited
+from .files import cause
+from .notes import known_notes
 from .provenance import describe_origin
 from .reading import read_toml, to_toml
 from .settings import Experiment, load_experiment
@@ -23,18 +25,6 @@ from .settings import Experiment, load_experiment
 _PACKAGE = __name__.partition(".")[0]
 # A run's notes take about a thousand bytes, and eighty for each session.
 _LARGEST_NOTES = 2**20
-# What is read of the notes, and its type.
-_TEXT = (str, type(None))
-_NOTES: dict[str, tuple[type, ...]] = {
-    "outcome": _TEXT,
-    "weights": _TEXT,
-    "timesteps": (int,),
-    "sessions": (list,),
-    "versions": (dict, type(None)),
-    "git": (dict, type(None)),
-    "hardware": (dict, type(None)),
-}
-_SESSION = {"started": (str,), "seconds": (int, float), "from": (int,), "to": (int,)}
 
 
 @dataclass(frozen=True)
@@ -104,13 +94,10 @@ class RunFolder:
 
         Raises `SettingsError` if the file is damaged.
         """
-        if not self.notes.is_file():
+        if not self.notes.exists():
             return {}
         try:
-            notes: dict[str, Any] = json.loads(read_limited(self.notes, _LARGEST_NOTES))
-            _check_types(notes, _NOTES)
-            for session in notes.get("sessions", []):
-                _check_types(session, _SESSION, complete=True)
+            return known_notes(json.loads(read_limited(self.notes, _LARGEST_NOTES)))
         except OSError as error:
             raise SettingsError(f"{self.notes}: cannot be read: {cause(error)}") from None
         except (ValueError, RecursionError) as error:
@@ -118,7 +105,6 @@ class RunFolder:
                 f"{self.notes}: damaged ({error}); replace it with a copy or remove it; it says "
                 f"only how the run was made and how it ended"
             ) from None
-        return notes
 
     @contextmanager
     def locked(self) -> Iterator[None]:
@@ -132,14 +118,15 @@ class RunFolder:
         lock = FileLock(self.path / "lock", timeout=0)
         try:
             lock.acquire()
+            remove_unfinished(self.path)
         except Timeout:
             raise SettingsError(
                 f"{self.path}: another process is training this run; wait until it ends, or stop it"
             ) from None
         except OSError as error:
+            lock.release()
             raise SettingsError(f"{self.path}: cannot be written to: {cause(error)}") from None
         try:
-            remove_unfinished(self.path)
             yield
         finally:
             lock.release()
@@ -258,21 +245,6 @@ class ModelFile:
 def pretrained_run() -> Path:
     """Return the folder of the agent that comes with the package."""
     return Path(str(resources.files(pretrained)))
-
-
-def _check_types(table: Any, types: Mapping[str, tuple[type, ...]], complete: bool = False) -> None:
-    """Raise ValueError unless the values of a table have these types.
-
-    With ``complete`` no key may be missing. Types are compared exactly: Python takes `true` for an
-    integer.
-    """
-    if not isinstance(table, dict):
-        raise ValueError("not a table")
-    for key, accepted in types.items():
-        if key not in table and not complete:
-            continue
-        if type(table.get(key)) not in accepted:
-            raise ValueError(f"{key!r} is {table.get(key)!r:.40}")
 
 
 def _new_folder(parent: Path, stem: str) -> Path:

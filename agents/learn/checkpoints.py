@@ -17,21 +17,19 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
 
 from ...envs.atomic import write_atomically
+from ...envs.reading import read_limited
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
 from ..experiment.files import cause, quoted
+from ..experiment.provenance import memory_gib
 from ..experiment.worlds import native
-from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
-from .curves import is_number
-from .tensors import is_like, read_tensors, write_tensors
+from .checkpoint_form import RECENT, State, check_state
+from .tensors import read_tensors, write_tensors
 
 # What stable-baselines3 counts and keeps from one rollout to the next.
 _COUNTERS = ("num_timesteps", "_n_updates", "_episode_num", "_current_progress_remaining")
 _LAST = ("_last_obs", "_last_episode_starts")
-_RECENT = ("ep_info_buffer", "ep_success_buffer")
 _FORMAT = 3
-
-State = dict[str, Any]
 
 
 def capture(model: PPO, venv: GymnasiumVecEnv, callback_state: dict[str, Any]) -> State:
@@ -46,7 +44,7 @@ def capture(model: PPO, venv: GymnasiumVecEnv, callback_state: dict[str, Any]) -
         "optimizer": model.policy.optimizer.state_dict(),
         "counters": {name: getattr(model, name) for name in _COUNTERS},
         "last": {name: getattr(model, name) for name in _LAST},
-        "recent": {name: getattr(model, name) for name in _RECENT},
+        "recent": {name: getattr(model, name) for name in RECENT},
         "log": _pending(model.logger),
         "environment": np.frombuffer(native(venv.env).snapshot(), np.uint8),
         "statistics": venv.get_statistics(),
@@ -103,7 +101,8 @@ def restore(state: State, model: PPO, venv: GymnasiumVecEnv) -> None:
     model._last_obs = venv.reset()  # type: ignore[assignment]
     model._last_episode_starts = np.ones(venv.num_envs, np.bool_)
     model.ep_info_buffer, model.ep_success_buffer = (_queue(model), _queue(model))
-    _check(state, capture(model, venv, {}), list(model.policy.parameters()))
+    fresh, weights = capture(model, venv, {}), list(model.policy.parameters())
+    check_state(state, fresh, weights, venv.observation_space)
     model.policy.load_state_dict(state["policy"])
     model.policy.optimizer.load_state_dict(state["optimizer"])
     for name, value in state["counters"].items():
@@ -139,117 +138,14 @@ def _arrays(value: Any) -> Any:
     return value.numpy().copy() if isinstance(value, torch.Tensor) else value
 
 
-def _check(state: State, fresh: State, weights: list[torch.Tensor]) -> None:
-    """Raise ValueError unless a state has the same form as that of a new training."""
-    _check_keys(state, fresh, "it")
-    for name in ("policy", "counters", "last", "statistics", "random"):
-        _check_form(state[name], fresh[name], name)
-    _check_optimizer(state["optimizer"], fresh["optimizer"], weights)
-    counters = state["counters"]
-    if not all(0 <= counters[name] < 2**62 for name in ("num_timesteps", "_n_updates")):
-        raise ValueError("counters are out of their range")
-    if not 0 <= state["random"]["numpy"][1] <= len(state["random"]["numpy"][0]):
-        raise ValueError("random.numpy is out of its range")
-    _check_recent(state["recent"], fresh["recent"])
-    _check_log(state["log"], fresh["log"])
-    _check_callbacks(state["callbacks"])
-    snapshot = state["environment"]
-    if not isinstance(snapshot, torch.Tensor) or snapshot.dtype != torch.uint8:
-        raise ValueError("environment must hold bytes")
-    # Otherwise a single byte could look like billions.
-    if snapshot.dim() != 1 or not snapshot.is_contiguous():
-        raise ValueError("environment must hold one row of bytes")
-
-
-def _check_recent(state: Any, fresh: State) -> None:
-    """Raise ValueError unless these are the results of episodes of this game."""
-    _check_keys(state, fresh, "recent")
-    episodes, successes = (state[name] for name in _RECENT)
-    if type(episodes) is not list or type(successes) is not list:
-        raise ValueError("recent must hold lists")
-    for episode in episodes:
-        _check_numbers(episode, "recent")
-        if not {"r", "l", *FINAL_KEYWORDS, *SUMMED_KEYWORDS} <= episode.keys():
-            raise ValueError("recent has episodes of another game")
-    if not all(type(success) in (bool, int, float) for success in successes):
-        raise ValueError("recent must hold numbers")
-
-
-def _check_log(state: Any, fresh: State) -> None:
-    """Raise ValueError unless these are logged numbers, and who does not get them."""
-    _check_keys(state, fresh, "log")
-    _check_numbers(state["values"], "log.values")
-    _check_numbers(state["counts"], "log.counts")
-    _check_keys(state["excluded"], state["values"], "log.excluded")
-    for outputs in state["excluded"].values():
-        if type(outputs) is not list or not all(type(output) is str for output in outputs):
-            raise ValueError("log.excluded must hold lists of texts")
-
-
-def _check_callbacks(state: Any) -> None:
-    """Raise ValueError unless callbacks have left numbers, and no best one where there is none."""
-    own = dict(state) if isinstance(state, dict) else None
-    validation = own.pop("validation", {}) if own is not None else None
-    if isinstance(validation, dict) and validation.get("best", 0.0) is None:
-        validation = {**validation, "best": 0.0}
-    _check_numbers(own, "callbacks")
-    _check_numbers(validation, "callbacks.validation")
-
-
-def _check_optimizer(state: Any, fresh: Any, weights: list[torch.Tensor]) -> None:
-    """Raise ValueError unless Adam's moments, where there are any, have the weights' shapes."""
-    _check_keys(state, fresh, "optimizer")
-    _check_form(state["param_groups"], fresh["param_groups"], "optimizer")
-    for group, other in zip(state["param_groups"], fresh["param_groups"], strict=True):
-        # Only the learning rate changes, and each update sets it.
-        if {**group, "lr": 0.0} != {**other, "lr": 0.0}:
-            raise ValueError("optimizer has other options")
-    moments = state["state"]
-    if not isinstance(moments, dict) or not set(moments) <= set(range(len(weights))):
-        raise ValueError("optimizer is that of another network")
-    for index, of_weight in moments.items():
-        weight = weights[index]
-        like = {"step": torch.tensor(0.0), "exp_avg": weight, "exp_avg_sq": weight}
-        _check_form(of_weight, like, f"optimizer.{index}")
-        if of_weight["step"] < 0 or (of_weight["exp_avg_sq"] < 0).any():
-            raise ValueError("optimizer has a negative number where none can be")
-
-
-def _check_keys(value: Any, fresh: State, where: str) -> None:
-    if not isinstance(value, dict) or value.keys() != fresh.keys():
-        raise ValueError(f"{where} has other entries than a checkpoint of this run")
-
-
-def _check_numbers(table: Any, where: str) -> None:
-    if not isinstance(table, dict) or not all(
-        isinstance(name, str) and is_number(value) for name, value in table.items()
-    ):
-        raise ValueError(f"{where} must hold numbers")
-
-
-def _check_form(value: Any, fresh: Any, where: str) -> None:
-    """Raise ValueError unless a value has the types, keys, lengths and shapes of another."""
-    if isinstance(fresh, torch.Tensor):
-        alike = is_like(value, fresh)
-    elif isinstance(fresh, dict):
-        alike = isinstance(value, dict) and value.keys() == fresh.keys()
-    elif isinstance(fresh, list | tuple):
-        alike = type(value) is type(fresh) and len(value) == len(fresh)
-    else:
-        alike = type(value) is type(fresh)
-    if not alike:
-        raise ValueError(f"{where} is not that of this run")
-    if isinstance(fresh, dict):
-        for key in fresh:
-            _check_form(value[key], fresh[key], f"{where}.{key}")
-    elif isinstance(fresh, list | tuple):
-        for index, (item, other) in enumerate(zip(value, fresh, strict=True)):
-            _check_form(item, other, f"{where}.{index}")
-
-
 def write_checkpoint(state: State, path: Path) -> None:
     """Write a captured state to a file, atomically."""
     write_atomically(path, write_tensors(state))
+
+
+def _largest() -> int:
+    """Return how many bytes a checkpoint may have: reading takes a few times their memory."""
+    return int((memory_gib() or 16.0) * 2**30 / 4)
 
 
 def read_checkpoint(path: Path) -> State:
@@ -258,7 +154,7 @@ def read_checkpoint(path: Path) -> State:
     Raises `SettingsError` if the file cannot be read.
     """
     try:
-        state = read_tensors(path.read_bytes())
+        state = read_tensors(read_limited(path, _largest()))
         if not isinstance(state, dict):
             raise ValueError("it holds something else")
     except FileNotFoundError:

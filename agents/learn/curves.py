@@ -1,16 +1,20 @@
 """Learning curves: a file with one JSON line per measurement, which a resumed run continues."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 from ...envs.atomic import write_atomically
+from ...envs.reading import read_limited
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, read_limited
+from ..experiment.files import cause
 
 STEP = "timesteps"
 # Some five hundred bytes a line, and a line for each rollout.
 _LARGEST = 2**28
+# Beyond what a network computes in single precision; sums and squares of such numbers are finite.
+_FURTHEST = 1e39
 
 
 class CurveWriter:
@@ -46,7 +50,7 @@ def read_curve(path: Path) -> list[dict[str, Any]]:
     Raises `SettingsError` if the file cannot be read or another line is damaged.
     """
     try:
-        content = read_limited(path, _LARGEST) if path.is_file() else b""
+        content = read_limited(path, _LARGEST) if path.exists() else b""
     except OSError as error:
         raise SettingsError(f"{path}: cannot be read: {cause(error)}") from None
     except ValueError as error:
@@ -68,7 +72,7 @@ def read_curve(path: Path) -> list[dict[str, Any]]:
 def _row(line: bytes) -> dict[str, Any]:
     """Return a line's numbers; raise ValueError if it has something else."""
     row = json.loads(line)
-    if not isinstance(row, dict) or type(row.get(STEP)) is not int:
+    if not isinstance(row, dict) or type(row.get(STEP)) is not int or row[STEP] < 0:
         raise ValueError
     if not all(is_number(value) for value in row.values()):
         raise ValueError
@@ -76,8 +80,13 @@ def _row(line: bytes) -> dict[str, Any]:
 
 
 def is_number(value: Any) -> bool:
-    """Tell whether a value that was read is a number that an array can hold."""
-    return type(value) is float or (type(value) is int and -(2**63) <= value < 2**63)
+    """Tell whether a value that was read is a number that a training can have logged.
+
+    It can be infinite or NaN: so a training that diverges says.
+    """
+    if type(value) is int:
+        return -(2**63) <= value < 2**63
+    return type(value) is float and (not math.isfinite(value) or abs(value) <= _FURTHEST)
 
 
 def _line(row: dict[str, Any]) -> str:

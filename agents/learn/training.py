@@ -70,7 +70,8 @@ def train(
 def _cannot_write(folder: RunFolder, error: OSError) -> str:
     """Return a sentence that says what stopped a training and how to go on."""
     full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-    reason = "the disk is full" if full else f"writing failed ({cause(error)})"
+    what = f"writing {error.filename}" if error.filename else "writing"
+    reason = "the disk is full" if full else f"{what} failed ({cause(error)})"
     start = "free some space, then go on with" if full else "go on with"
     if folder.checkpoint.is_file():
         return f"{folder.path}: {reason}; {start}: arkanoid train --resume {quoted(folder.path)}"

@@ -1,6 +1,8 @@
 """A search for hyper-parameters: the search space, and how trials are trained and judged."""
 
+import errno
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 
 _JOURNAL = "study.journal"
 _BOUNDS = ("low", "high", "log", "step")
+_MOST = 2**53  # of a bound: so all integers below are floats, too
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,27 @@ class Parameter:
         return repr(
             trial.suggest_float(self.key, self.low, self.high, step=self.step, log=self.log)
         )
+
+    def distribution(self) -> "optuna.distributions.BaseDistribution":
+        """Return what `suggest` draws from, as a study keeps it."""
+        from optuna.distributions import (
+            CategoricalDistribution,
+            FloatDistribution,
+            IntDistribution,
+        )
+
+        if self.choices:
+            return CategoricalDistribution(self.choices)
+        if isinstance(self.low, int) and isinstance(self.high, int):
+            step = 1 if self.step is None else int(self.step)
+            return IntDistribution(self.low, self.high, self.log, step)
+        return FloatDistribution(self.low, self.high, self.log, self.step)
+
+    def has(self, value: Any) -> bool:
+        """Tell whether a trial can have this value."""
+        if self.choices:
+            return value in self.choices
+        return type(value) in (int, float) and self.low <= value <= self.high
 
 
 @dataclass(frozen=True)
@@ -111,10 +135,12 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
         choices = item["choices"]
         if not isinstance(choices, Sequence) or isinstance(choices, str) or not choices:
             raise SettingsError(f"{where}: 'choices' must be a list of values")
-        texts = tuple(json.dumps(choice) for choice in choices)
         for choice in choices:
             check_value(Experiment, key, choice, source)
-        return Parameter(key, texts)
+        try:
+            return Parameter(key, tuple(json.dumps(choice, allow_nan=False) for choice in choices))
+        except (TypeError, ValueError):  # dates, and numbers that are not finite
+            raise SettingsError(f"{where}: no setting takes such 'choices'") from None
     if not {"low", "high"} <= set(item) <= set(_BOUNDS):
         raise SettingsError(
             f"{where} must have 'choices', or 'low' and 'high' and perhaps 'log' or 'step'"
@@ -123,8 +149,13 @@ def _parameter(key: str, item: Any, source: str) -> Parameter:
         check_value(Experiment, key, item[bound], source)
     low, high, log, step = item["low"], item["high"], item.get("log"), item.get("step")
     numbers = [low, high, *([] if step is None else [step])]
-    if any(type(number) not in (int, float) for number in numbers) or low >= high:
-        raise SettingsError(f"{where}: 'low', 'high' and 'step' must be numbers, 'low' the smaller")
+    if not all(type(number) in (int, float) and abs(number) < _MOST for number in numbers):
+        raise SettingsError(f"{where}: 'low', 'high' and 'step' must be numbers below {_MOST}")
+    if low >= high:
+        raise SettingsError(f"{where}: 'low' and 'high' must be two numbers, 'low' the smaller")
+    whole = type(low) is int and type(high) is int
+    if step is not None and (step <= 0 or (whole and type(step) is not int)):
+        raise SettingsError(f"{where}: 'step' must be above 0, and an integer between integers")
     if log not in (None, True, False) or (log and (step is not None or low <= 0)):
         raise SettingsError(f"{where}: 'log' must be true or false, without 'step', above 0")
     return Parameter(key, low=low, high=high, log=bool(log), step=step)
@@ -134,7 +165,7 @@ def open_study(folder: Path, space: SearchSpace, seed: int) -> "optuna.Study":
     """Return the study in a folder; make a new one if there is none.
 
     A study is a file that needs no server, and several processes may work on it at once. Raises
-    `SettingsError` if the file cannot be written, or is damaged.
+    `SettingsError` if the file cannot be written, is damaged, or is the study of another search.
     """
     import optuna
     from optuna.storages import JournalStorage
@@ -144,13 +175,17 @@ def open_study(folder: Path, space: SearchSpace, seed: int) -> "optuna.Study":
     journal = folder / _JOURNAL
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        if journal.exists() and not journal.is_file():
+            raise OSError(errno.EINVAL, "not a regular file")
         storage = JournalStorage(JournalFileBackend(str(journal)))
         study = optuna.create_study(
             storage=storage, study_name="arkanoid", direction="maximize", load_if_exists=True
         )
-        study.get_trials(deepcopy=False)
+        _check_study(study, space)
     except OSError as error:
         raise SettingsError(f"{journal}: cannot be written: {cause(error)}") from None
+    except SettingsError as error:
+        raise SettingsError(f"{journal}: {error}: name another --study") from None
     except Exception as error:  # a damaged file can raise anything
         raise SettingsError(
             f"{journal}: the study cannot be read ({type(error).__name__}: {error}): replace it "
@@ -160,6 +195,40 @@ def open_study(folder: Path, space: SearchSpace, seed: int) -> "optuna.Study":
     study.sampler = optuna.samplers.TPESampler(seed=seed + len(study.trials))
     study.pruner = optuna.pruners.MedianPruner(space.startup, space.warmup)
     return study
+
+
+def _check_study(study: "optuna.Study", space: SearchSpace) -> None:
+    """Raise `SettingsError` unless a study is that of a search of this space, or is new.
+
+    Optuna would find out in the middle of a trial, or not at all.
+    """
+    from optuna.study import StudyDirection
+    from optuna.trial import TrialState
+
+    if study.directions != [StudyDirection.MAXIMIZE]:
+        raise SettingsError("the study does not look for one large value")
+    if "measure" not in study.user_attrs:
+        study.set_user_attr("measure", space.measure)
+    if study.user_attrs["measure"] != space.measure:
+        raise SettingsError(f"the study compares another measure than {space.measure!r}")
+    known = {parameter.key: parameter for parameter in space.parameters}
+    drawn = {key: parameter.distribution() for key, parameter in known.items()}
+    for trial in study.get_trials(deepcopy=False):
+        complete = trial.state == TrialState.COMPLETE
+        if any(drawn.get(key) != distribution for key, distribution in trial.distributions.items()):
+            raise SettingsError("the study searched another space")
+        if complete and trial.distributions.keys() != drawn.keys():
+            raise SettingsError("the study searched another space")
+        if not all(known[key].has(value) for key, value in trial.params.items()):
+            raise SettingsError(f"trial {trial.number} has a setting outside its bounds")
+        values = trial.values or []
+        measured = [*trial.intermediate_values.values(), *values]
+        if len(values) > 1 or (complete and not values) or not all(map(_is_finite, measured)):
+            raise SettingsError(f"trial {trial.number} was not measured as here")
+
+
+def _is_finite(value: Any) -> bool:
+    return type(value) in (int, float) and abs(value) < math.inf
 
 
 def search(
@@ -248,8 +317,6 @@ def best_as_toml(study: "optuna.Study", space: SearchSpace) -> str:
     complete = study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,))
     table: dict[str, Any] = {}
     for parameter in space.parameters:
-        if parameter.key not in best.params:
-            raise SettingsError(f"the study searched another space, without {parameter.key!r}")
         value = best.params[parameter.key]
         value = json.loads(value) if parameter.choices else value
         *path, name = parameter.key.split(".")

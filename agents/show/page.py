@@ -16,6 +16,7 @@ from markdown_it import MarkdownIt
 from markupsafe import Markup
 
 from ...envs.atomic import write_atomically
+from ..experiment.files import printable
 
 _KINDS = {".png": "image/png", ".gif": "image/gif"}
 # What has a meaning inside a line of Markdown; underscores inside a word have none.
@@ -58,7 +59,7 @@ def as_html(facts: Mapping[str, Any], pictures: Pictures) -> str:
     renderer = MarkdownIt("commonmark", {"html": False, "xhtmlOut": False}).enable("table")
     body = renderer.render(as_markdown(facts, sources))
     template = _templates(autoescape=True).get_template("page.html.jinja")
-    return template.render(title=f"Arkanoid: {facts['name']}", body=Markup(body)) + "\n"
+    return template.render(title=printable(f"Arkanoid: {facts['name']}"), body=Markup(body)) + "\n"
 
 
 def as_markdown(facts: Mapping[str, Any], sources: Mapping[str, str]) -> str:
@@ -75,7 +76,7 @@ def escape(value: object) -> str:
     """Return a value as one line of Markdown that shows it as it is."""
     if isinstance(value, Markdown):
         return value
-    return _SPECIAL.sub(lambda found: f"\\{found[0]}", " ".join(str(value).split()))
+    return _SPECIAL.sub(lambda found: f"\\{found[0]}", printable(str(value)))
 
 
 def table(rows: Sequence[Sequence[object]]) -> Markdown:

@@ -1,6 +1,7 @@
 """Plots of results: all policies, level by level, and the learning curves."""
 
 import io
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -101,7 +102,7 @@ def plot_curves(curves: Sequence[Sequence[Mapping[str, Any]]]) -> Figure:
     shown = {
         key: title
         for key, title in _CURVES.items()
-        if all(any(key in row for row in curve) for curve in curves)
+        if all(len(_measured(curve, key)) for curve in curves)
     }
     rows = max(1, -(-len(shown) // 3))
     figure = Figure(figsize=(12, 3 * rows), layout="constrained")
@@ -122,18 +123,21 @@ def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArr
     """Return decisions, the runs' means, and both ends of their 95 % intervals, [4, points].
 
     All curves are read at the same decisions, as far as the shortest one goes, with straight lines
-    between measurements.
+    between measurements. Each must have a finite one.
     """
-    series = [
-        np.array([(row[STEP], row[key]) for row in curve if key in row], np.float64)
-        for curve in curves
-    ]
+    series = [_measured(curve, key) for curve in curves]
     first, last = max(one[0, 0] for one in series), min(one[-1, 0] for one in series)
     steps = np.linspace(first, max(first, last), _POINTS)
     values = np.stack([np.interp(steps, one[:, 0], one[:, 1]) for one in series])
     intervals = np.array([bootstrap_interval(values[:, at]) for at in range(_POINTS)])
     lines: NDArray[np.float64] = np.concatenate([steps[None], intervals.T])
     return lines
+
+
+def _measured(curve: Sequence[Mapping[str, Any]], key: str) -> NDArray[np.float64]:
+    """Return the decisions and the values of all finite measurements, [n, 2]."""
+    points = [(row[STEP], row[key]) for row in curve if math.isfinite(row.get(key, math.nan))]
+    return np.array(points, np.float64).reshape(-1, 2)
 
 
 def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:

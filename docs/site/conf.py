@@ -29,6 +29,7 @@ version = release = arkanoid.__version__
 repository = tomllib.loads(PYPROJECT.read_text("utf-8"))["project"]["urls"]["Repository"]
 
 extensions = [
+    "anchors",
     "folders",
     "mathml",
     "myst_parser",

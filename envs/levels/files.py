@@ -20,10 +20,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..reading import read_limited
 from ..rules import BRICK_LETTERS, COLUMNS, EMPTY, GOLD, ROWS
 from .clearability import unreachable_bricks
 
 _PACKAGED = f"{__package__}.named"
+_MOST_BYTES = 1 << 20  # of a file
 
 # The named levels in the order in which the campaign plays them; the boss is in the last one.
 CAMPAIGN: tuple[str, ...] = (
@@ -86,9 +88,12 @@ def load_level(name_or_path: str) -> Level:
         )
     try:
         # Some editors begin a file with a byte-order mark.
-        return parse_level(path.read_text("utf-8-sig"), name_or_path)
+        text = read_limited(path, _MOST_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ValueError(f"{name_or_path}: the file is not UTF-8 text: {error}") from None
+    except ValueError as error:
+        raise ValueError(f"{name_or_path}: not a level: {error}") from None
+    return parse_level(text, name_or_path)
 
 
 def parse_level(text: str, source: str) -> Level:

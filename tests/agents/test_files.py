@@ -1,8 +1,10 @@
 """Files exist whole or not at all; a failed write keeps the old file and leaves no other."""
 
+import contextlib
 import errno
 import os
 import shlex
+import socket
 import sys
 import threading
 from collections.abc import Iterator
@@ -10,10 +12,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arkanoid.agents.experiment.files import quoted, read_limited
+from arkanoid.agents.experiment.files import quoted
 from arkanoid.agents.show.film import Picture, write_film
 from arkanoid.envs import atomic
 from arkanoid.envs.atomic import remove_unfinished, replace_atomically, write_atomically
+from arkanoid.envs.reading import read_limited
 from helpers.processes import run_program
 
 FULL = OSError(errno.ENOSPC, "No space left on device")
@@ -112,6 +115,21 @@ def test_no_more_is_read_than_asked_for(tmp_path: Path) -> None:
     assert read_limited(path, 5) == b"12345"
     with pytest.raises(ValueError, match="larger than 4 bytes"):
         read_limited(path, 4)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders and pipes of another kind")
+def test_what_is_no_file_is_not_read(tmp_path: Path) -> None:
+    """A pipe in the place of a checkpoint kept its reader waiting for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", tmp_path, Path("/dev/zero"), Path("/dev/null")):
+        with pytest.raises(OSError, match=r"not a regular file|Is a directory"):
+            read_limited(path, 5)
+    with socket.socket(socket.AF_UNIX) as listening:
+        # The path of a socket is short.
+        with contextlib.chdir(tmp_path):
+            listening.bind("socket")
+        with pytest.raises(OSError, match="No such device"):
+            read_limited(tmp_path / "socket", 5)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="another shell")

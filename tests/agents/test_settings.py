@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
+from arkanoid.agents.experiment.packaged import packaged_configs
 from arkanoid.agents.experiment.reading import (
     describe_settings,
-    packaged_configs,
     read_settings,
     to_toml,
 )

@@ -1,16 +1,23 @@
 """The search for hyper-parameters: spaces, studies that go on, and their best settings."""
 
+import os
 import re
+import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import optuna
 import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
-from arkanoid.agents.experiment.reading import packaged_configs, read_settings
+from arkanoid.agents.experiment.packaged import packaged_configs
+from arkanoid.agents.experiment.reading import read_settings
 from arkanoid.agents.experiment.settings import Experiment
 from arkanoid.agents.learn.tuning import best_as_toml, load_space, open_study
+from helpers.runs import sentence
+from optuna.storages.journal import JournalFileBackend
 
 SPACE = """
 measure = "score"
@@ -101,6 +108,12 @@ def test_the_packaged_space_is_valid_and_is_not_listed_as_a_config() -> None:
         ('[parameters]\n"ppo.gamma" = {low = 0.1, high = 2.0}', ["'ppo.gamma'", "at most 1"]),
         ('[parameters]\n"ppo.gamma" = {low = 0.2, high = 0.1}', ["'low' the smaller"]),
         ('[parameters]\n"ppo.gamma" = {low = 0.0, high = 1.0, log = true}', ["'log'", "above 0"]),
+        ('[parameters]\n"ppo.gamma" = {low = 0.1, high = 0.9, step = 0}', ["'step'"]),
+        ('[parameters]\n"ppo.n_epochs" = {low = 1, high = 3, step = 0.5}', ["'step'"]),
+        ('[parameters]\n"env.life_penalty" = {low = 0.1, high = inf}', ["numbers below"]),
+        (f'[parameters]\n"env.speed" = {{low = 1, high = 1{"0" * 400}}}', ["numbers below"]),
+        ('[parameters]\n"env.speed" = {choices = [nan]}', ["'env.speed'", "'choices'"]),
+        ('[parameters]\n"env.speed" = {choices = [1979-05-27]}', ["'env.speed'", "'choices'"]),
         ('[parameters]\n"ppo.gamma" = {choices = []}', ["'ppo.gamma'", "'choices'"]),
         ('[parameters]\n"ppo.gamma" = {choices = [0.5, "x"]}', ["'ppo.gamma'", "'x'"]),
         ('[parameters]\n"network.activation" = {choices = ["rellu"]}', ["'relu'", "'rellu'"]),
@@ -117,6 +130,73 @@ def test_an_error_in_a_space_names_the_file_and_what_is_right(
     assert path in str(caught.value)
     for word in words:
         assert word in str(caught.value)
+
+
+def foreign(folder: Path, **arguments: Any) -> optuna.Study:
+    """Begin somebody else's study where the command looks for its own."""
+    storage = optuna.storages.JournalStorage(JournalFileBackend(str(folder / "study.journal")))
+    arguments = {"direction": "maximize", **arguments}
+    return optuna.create_study(storage=storage, study_name="arkanoid", **arguments)
+
+
+def several(folder: Path) -> None:
+    foreign(folder, direction=None, directions=["maximize", "minimize"])
+
+
+def smallest(folder: Path) -> None:
+    foreign(folder, direction="minimize")
+
+
+def other_parameters(folder: Path) -> None:
+    foreign(folder).optimize(lambda trial: trial.suggest_float("x", 0.0, 1.0), 1)
+
+
+def other_bounds(folder: Path) -> None:
+    foreign(folder).optimize(lambda trial: trial.suggest_float("ppo.gamma", 0.5, 0.9), 1)
+
+
+def fewer_parameters(folder: Path) -> None:
+    foreign(folder).optimize(lambda trial: 1.0, 1)
+
+
+def other_measure(folder: Path) -> None:
+    foreign(folder).set_user_attr("measure", "hits")
+
+
+def infinite(folder: Path) -> None:
+    def play(trial: optuna.Trial) -> float:
+        return trial.suggest_float("ppo.gamma", 0.9, 1.0) * float("inf")
+
+    foreign(folder).optimize(play, 1)
+
+
+def a_pipe(folder: Path) -> None:
+    os.mkfifo(folder / "study.journal")
+
+
+def a_folder(folder: Path) -> None:
+    (folder / "study.journal").mkdir()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such pipes")
+@pytest.mark.parametrize(
+    "make",
+    [
+        *(several, smallest, other_parameters, other_bounds, fewer_parameters, other_measure),
+        *(infinite, a_pipe, a_folder),
+    ],
+)
+def test_the_study_of_another_search_is_named_before_the_training(
+    make: Callable[[Path], None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A study of two values trained a trial, and then raised Optuna's NotImplementedError."""
+    study = tmp_path / "study"
+    study.mkdir()
+    make(study)
+    path = space_file(tmp_path, '[parameters]\n"ppo.gamma" = {low = 0.9, high = 1.0}')
+    arguments = ["tune", "quick", *SMALL, "--space", path, "--study", str(study)]
+    assert str(study / "study.journal") in sentence([*arguments, "--trials", "3"], capsys)
+    assert [file.name for file in study.iterdir()] == ["study.journal"]
 
 
 def test_without_a_complete_trial_there_is_no_best(tmp_path: Path) -> None:

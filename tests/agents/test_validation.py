@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from arkanoid.agents.experiment.packaged import packaged_configs
 from arkanoid.agents.experiment.provenance import weights_hash
-from arkanoid.agents.experiment.reading import packaged_configs
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Curriculum, Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds, native

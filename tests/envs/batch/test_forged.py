@@ -1,5 +1,6 @@
 """Snapshots and replays that somebody forged: refused, or harmless."""
 
+import contextlib
 import dataclasses
 import errno
 import json
@@ -226,17 +227,87 @@ def rewritten(edit, commands=None):
         (lambda head: head.update(palette=[]), "corrupt"),
         (lambda head: head["result"].update(decisions=2780), "corrupt"),
         (lambda head: head["result"].update(decisions=10**9), "at most 10,000,000 decisions"),
-        (lambda head: head["start"].update(random=1.5e300), "no game begins like this"),
+        (lambda head: head["start"].update(random=1.5e300), "start.random"),
         (lambda head: head["start"].update(layout="w" * 199), "a layout is at most 198"),
         (lambda head: head["start"]["fields"].update(start=1), "nothing to hit"),
         (lambda head: head["levels"]["bricks"].__setitem__(0, "X" * 198), "nothing to hit"),
-        (lambda head: head["levels"].update(first_difficulty=float("nan")), "no game has such"),
+        (lambda head: head["levels"].update(first_difficulty=float("nan")), "first_difficulty"),
         (lambda head: head["levels"].update(names=["Ripple"]), "no game has such levels"),
     ],
 )
 def test_what_is_no_replay_is_a_value_error(edit, said):
     with pytest.raises(ValueError, match=said):
         Replay.from_bytes(rewritten(edit))
+
+
+OTHERS = [
+    *(None, True, -1, 0, 1.5, 10**400, 1e308, -1e308, float("nan"), "", "\x1b[31m", [], {}),
+    json.loads("[" * 500 + "]" * 500),
+]
+
+
+def leaves(value, path=()):
+    """Return the paths to all values of a replay's JSON, of the longer lists only to the first."""
+    if isinstance(value, dict):
+        return [path, *(way for key in value for way in leaves(value[key], (*path, key)))]
+    if isinstance(value, list) and value:
+        return [path, *leaves(value[0], (*path, 0))]
+    return [path]
+
+
+def changed(head, way, value):
+    *path, last = way
+    for key in path:
+        head = head[key]
+    head[last] = value
+
+
+def test_a_value_of_another_type_is_refused():
+    """A fraction was taken for a seed or a round, and null for "there is no boss"."""
+    content = bytes(opened(GOLDEN.read_bytes()))
+    (length,) = struct.unpack_from("<I", content)
+    golden = json.loads(zlib.decompress(content[4 : 4 + length]))
+    types = {way: type(found(golden, way)) for way in leaves(golden)[1:]}
+    assert len(types) > 40
+    for way, old in types.items():
+        for value in OTHERS:
+            forged = rewritten(lambda head, way=way, value=value: changed(head, way, value))
+            fits = type(value) is old or (type(value), old) == (int, float)
+            if fits or way[0] == "config":
+                with contextlib.suppress(ValueError):
+                    Replay.from_bytes(forged)
+            else:
+                with pytest.raises(ValueError, match="corrupt"):
+                    Replay.from_bytes(forged)
+
+
+def found(value, way):
+    for key in way:
+        value = value[key]
+    return value
+
+
+@pytest.mark.parametrize(
+    ("way", "value"),
+    [
+        *((("start", "fields", name), 1.0) for name in ("start", "start_round", "start_seed")),
+        (("start", "fields", "start_boss"), True),
+        (("levels", "seeds"), [0, 100, 5]),
+        (("levels", "seeds"), [0.0, 100]),
+        (("levels", "boss"), [None] * 13),
+        (("levels", "boss"), [0] * 13),
+        (("levels", "names"), "abcdefghijklm"),
+        (("result", "score"), 1.0),
+        (("result", "terminated"), 1),
+        (("result", "more"), 1),
+        (("palette", 0), ["0.5", "1"]),
+        (("checksums", 0), -1),
+        (("more",), 1),
+    ],
+)
+def test_what_python_takes_for_something_else_is_refused(way, value):
+    with pytest.raises(ValueError, match="corrupt"):
+        Replay.from_bytes(rewritten(lambda head: changed(head, way, value)))
 
 
 def test_a_replay_expands_to_no_more_than_its_decisions_take():

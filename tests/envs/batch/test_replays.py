@@ -295,7 +295,7 @@ def test_commands_that_no_player_could_give_are_refused(command):
 def test_a_beginning_that_no_game_has_is_refused(fields):
     replay = record(10)
     start = dataclasses.replace(replay.start, fields=replay.start.fields | fields)
-    with pytest.raises(ValueError, match="no game begins like this"):
+    with pytest.raises(ValueError, match=rf"start\.fields\.{next(iter(fields))} "):
         Replay.from_bytes(dataclasses.replace(replay, start=start).to_bytes())
     plan = dataclasses.replace(replay.plan, seeds=range(5, 5))
     with pytest.raises(ValueError, match="no game has such levels"):
