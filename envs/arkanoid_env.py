@@ -1,6 +1,5 @@
 """`ArkanoidEnv`: one game as a Gymnasium environment. It is a batch of one world."""
 
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -27,7 +26,7 @@ from .interface import (
 from .masks import action_masks
 from .observe.parts import copy_of
 from .rules import TICKS_PER_SECOND
-from .state import INFO_FIELDS, Outcome, WorldRecord
+from .state import WorldRecord
 
 if TYPE_CHECKING:
     from .batch.recorder import Recorder
@@ -35,11 +34,6 @@ if TYPE_CHECKING:
 
 Observation = Any  # an array, or with observation="dict" a dictionary of arrays
 
-_REWARD = Outcome.names.index("reward")  # type: ignore[union-attr]
-_TERMINATED = Outcome.names.index("terminated")  # type: ignore[union-attr]
-_TRUNCATED = Outcome.names.index("truncated")  # type: ignore[union-attr]
-_INFO = [Outcome.names.index(field) for field in INFO_FIELDS.values()]  # type: ignore[union-attr]
-_info_values = itemgetter(*_INFO)
 _ALL = np.ones(1, np.bool_)
 
 
@@ -128,13 +122,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         (outcome,) = batch.outcomes.tolist()
         if self.render_mode == "human":
             self._show()
-        return (
-            copy_of(batch.observer.observations[0]),
-            outcome[_REWARD],
-            outcome[_TERMINATED],
-            outcome[_TRUNCATED],
-            dict(zip(INFO_FIELDS, _info_values(outcome), strict=True)),
-        )
+        return (copy_of(batch.observer.observations[0]), *_results(outcome))
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, uint8 [height, width, 3], in render mode ``"rgb_array"``.
@@ -271,7 +259,7 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
     def _shown(self) -> tuple[Observation, dict[str, Any]]:
         """Return the present observation and info."""
         (outcome,) = self._batch.outcomes.tolist()
-        info = dict(zip(INFO_FIELDS, _info_values(outcome), strict=True))
+        *_, info = _results(outcome)
         return copy_of(self._batch.observations[0]), info
 
     def _show(self) -> None:
@@ -288,3 +276,43 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
             self._window = Window("Arkanoid", TICKS_PER_SECOND / self.config.frame_skip)
         if not self._window.closed:
             self._window.show(draw_world(self._batch.worlds, self._batch.rules, 0, screen_height()))
+
+
+def _results(outcome: tuple[Any, ...]) -> tuple[float, bool, bool, dict[str, Any]]:
+    """Return reward, terminated, truncated and info, from the fields of an `Outcome`.
+
+    The info has the keys of `INFO_FIELDS`. A loop over them would take three times as long, which
+    is a tenth of a step.
+    """
+    (
+        reward,
+        score,
+        lives,
+        round_number,
+        hits,
+        bricks_broken,
+        lives_gained,
+        capsules_caught,
+        enemies_destroyed,
+        lives_lost,
+        rounds_cleared,
+        bricks_left,
+        truncation,
+        terminated,
+        truncated,
+    ) = outcome
+    info = {
+        "score": score,
+        "lives": lives,
+        "round": round_number,
+        "bricks_left": bricks_left,
+        "truncation": truncation,
+        "hits": hits,
+        "bricks_broken": bricks_broken,
+        "capsules_caught": capsules_caught,
+        "enemies_destroyed": enemies_destroyed,
+        "lives_lost": lives_lost,
+        "lives_gained": lives_gained,
+        "rounds_cleared": rounds_cleared,
+    }
+    return reward, terminated, truncated, info

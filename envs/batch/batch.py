@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...physics.kernels.one_thread import OneThread
 from ...physics.kernels.threads import Threads
 from ..actions import BOX, COMMANDS, decode_actions, decode_velocities
 from ..checks import check_integer
@@ -21,7 +22,7 @@ from ..observe.choice import make_observer
 from ..state import GAME_OVER, Outcome, Outcomes, World, Worlds, copy_records, zeros_in_lines
 from .blocks import Block, divide, thread_count
 from .listeners import Listeners
-from .refusal import OneThread, why_refused
+from .refusal import why_refused
 from .setup import describe_setup
 from .stepping import reset_worlds, step_worlds
 
@@ -43,8 +44,7 @@ def _bytes_of(records: Any) -> NDArray[np.uint8]:
 class Batch:
     """Worlds that are played together, with the arrays that their steps read and write.
 
-    It belongs to one thread at a time: where two threads use it at once, the second one gets a
-    RuntimeError.
+    It belongs to one thread at a time: a call while another one is in progress gets a RuntimeError.
 
     Args:
         num_worlds: how many, at least 1.
@@ -62,7 +62,7 @@ class Batch:
         observer: what writes the observations.
         finals, final_observations: in same-step mode, those of the episodes that ended.
         listeners: they are told of every reset, step and restored state.
-        alone: a context that keeps other threads out.
+        alone: it refuses other calls while one is in progress.
         changes: how many of these have begun; after each the listeners are told, unless it is
             interrupted.
     """
@@ -99,8 +99,8 @@ class Batch:
         threads = self._most_threads or thread_count(count, self.config.observation)
         self._shares = [[self._block(index) for index in share] for share in divide(count, threads)]
         self._threads = Threads("arkanoid") if len(self._shares) > 1 else None
-        self.alone = OneThread()
-        self._look_who_waits()
+        self.alone = OneThread("this environment")
+        self._ready = False
 
     def clone(self) -> "Batch":
         """Return an independent batch in the same state, without listeners."""
@@ -155,12 +155,22 @@ class Batch:
         """What a state depends on besides itself, see `snapshots`."""
         return describe_setup(self.config, self.plan, self.rules, self.observations.dtype)
 
-    def _look_who_waits(self) -> None:
-        """Find out whether a world must be reset before the next step."""
+    def _make_ready(self) -> None:
+        """Look at worlds that anything but a whole step has changed, before they are stepped.
+
+        Raises:
+            ResetNeeded: a world must be reset before.
+        """
+        over = self.worlds["done"] != 0
         waits = self.worlds["round_number"] == 0
         if self.autoreset is Autoreset.DISABLED:
-            waits |= self.worlds["done"] != 0
-        self._waits = bool(waits.any())
+            waits |= over
+        if waits.any():
+            raise why_refused(self.worlds)
+        if self.autoreset is Autoreset.SAME_STEP and over.any():
+            # The step in which they ended was interrupted.
+            for block in self._all_blocks():
+                block.reset(over[block.where])
 
     def check_world(self, index: int) -> None:
         """Raise a TypeError for what is no index, a ValueError if it is of no world."""
@@ -223,25 +233,30 @@ class Batch:
 
         Raises:
             TypeError, ValueError: an option has an illegal value; then nothing changes.
-            RuntimeError: another thread is stepping the worlds.
+            RuntimeError: another call is in progress.
         """
         start = read_start(options or {}, self.config, self.plan)
-        with self.alone:
-            self.changes += 1
-            if seeds is not None:
-                self._seed_anew(mask, seeds)
-            if start:
-                set_starts(self.worlds, mask, start)
-                self.worlds["done"][mask] = GAME_OVER
-            for block in self._all_blocks():
-                block.reset(mask[block.where])
-                block.observe(mask[block.where])
-            if mask.all():
-                self._waits = False
-            else:
-                self._look_who_waits()
-            for listener in self.listeners:
-                listener.reset(mask)
+        self.alone.run(self._reset, mask, start, seeds)
+
+    def _reset(
+        self,
+        mask: NDArray[np.bool_],
+        start: dict[str, Any],
+        seeds: Sequence[int | None] | None,
+    ) -> None:
+        self._ready = False
+        self.changes += 1
+        if seeds is not None:
+            self._seed_anew(mask, seeds)
+        if start:
+            set_starts(self.worlds, mask, start)
+            self.worlds["done"][mask] = GAME_OVER
+        for block in self._all_blocks():
+            block.reset(mask[block.where])
+            block.observe(mask[block.where])
+        for listener in self.listeners:
+            listener.reset(mask)
+        self._ready = bool(mask.all())
 
     def _seed_anew(self, mask: NDArray[np.bool_], seeds: Sequence[int | None]) -> None:
         """Seed worlds of a mask; those with a seed will begin a game as if it were their first."""
@@ -280,44 +295,43 @@ class Batch:
 
     def _adopt(self, worlds: Worlds, outcomes: Outcomes, observations: NDArray[Any]) -> None:
         """Take a state that was checked."""
+        self._ready = False
         self.changes += 1
         _bytes_of(self.worlds)[:] = _bytes_of(worlds)
         _bytes_of(self.outcomes)[:] = _bytes_of(outcomes)
         self.observer.recall(observations)
         for listener in self.listeners:
             listener.interrupt()
-        self._look_who_waits()
 
     def step(self) -> None:
         """Play one decision, as `commands` say, in each world, and observe it.
 
         Raises:
             ResetNeeded: a world was never reset, or without autoreset its episode is over.
-            RuntimeError: another thread is stepping the worlds.
+            RuntimeError: another call is in progress.
         """
         alone = self.alone
-        if self._waits:
-            raise why_refused(self.worlds)
-        # As a context it would take a tenth of the step of a single world.
-        alone.enter()
-        self.changes += 1
+        # As a call, `OneThread.run` would take a good part of the step of a single world.
+        if alone.taken:
+            alone.refuse()
+        alone.taken = True
         try:
+            if not self._ready:
+                self._make_ready()
+            # Until all of it is done: Ctrl-C may come at any time.
+            self._ready = False
+            self.changes += 1
             self.observer.advance()
             if self._threads is None:
                 over = self._step_blocks(self._shares[0])
             else:
                 over = sum(self._threads.run(self._step_blocks, self._shares))
-            if over:
-                self._waits = self.autoreset is Autoreset.DISABLED
             if self.listeners.references:
                 for listener in self.listeners:
                     listener.step()
-        except BaseException:
-            # Ctrl-C, for instance: nobody has noted yet whose episode is over.
-            self._look_who_waits()
-            raise
+            self._ready = over == 0 or self.autoreset is not Autoreset.DISABLED
         finally:
-            alone.owner = 0
+            alone.taken = False
 
     def observe(self, mask: NDArray[np.bool_]) -> None:
         """Observe the worlds of a mask, bool [n], as they are."""

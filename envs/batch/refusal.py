@@ -1,38 +1,9 @@
-"""What a batch refuses: a step where a reset is needed, and a second thread."""
-
-from threading import get_ident
+"""What a batch refuses: a step where a reset is needed."""
 
 import numpy as np
 from gymnasium.error import ResetNeeded
 
 from ..state import Worlds
-
-
-class OneThread:
-    """A context that only one thread at a time can be in.
-
-    Attributes:
-        owner: the thread that is in it, or 0. A thread that Ctrl-C kept from leaving may enter
-            again.
-    """
-
-    def __init__(self) -> None:
-        self.owner = 0
-
-    def __enter__(self) -> None:
-        self.enter()
-
-    def __exit__(self, *_: object) -> None:
-        self.owner = 0
-
-    def enter(self) -> None:
-        """Note that this thread is in it; raise a RuntimeError if another one is."""
-        thread = get_ident()
-        if self.owner not in (0, thread):
-            raise RuntimeError(
-                "another thread is using this environment: it belongs to one thread at a time"
-            )
-        self.owner = thread
 
 
 def why_refused(worlds: Worlds) -> ResetNeeded:

@@ -37,15 +37,10 @@ def take_snapshot(batch: Batch, world: int | None = None) -> bytes:
     worlds = batch.worlds[share]
     if not batch.seeded[share].all():
         raise RuntimeError("there is no state yet: reset the environment before a snapshot")
-    with batch.alone:
-        content = (
-            _SIZES.pack(len(batch.setup), len(worlds)),
-            batch.setup,
-            worlds.tobytes(),
-            batch.outcomes[share].tobytes(),
-            batch.observations[share].tobytes(),
-        )
-    return seal(_MARK, _FORMAT, b"".join(content))
+    sizes = _SIZES.pack(len(batch.setup), len(worlds))
+    arrays = worlds, batch.outcomes[share], batch.observations[share]
+    content = batch.alone.run(lambda: [array.tobytes() for array in arrays])
+    return seal(_MARK, _FORMAT, b"".join((sizes, batch.setup, *content)))
 
 
 def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
@@ -60,8 +55,7 @@ def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has another number of worlds, {len(state[0])} instead of "
             f"{batch.num_worlds}; spread() takes that of one world to all"
         )
-    with batch.alone:
-        batch.restore(*state)
+    batch.alone.run(batch.restore, *state)
 
 
 def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
@@ -76,8 +70,7 @@ def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has {len(state[0])} worlds, and spread() takes that of one: of a single "
             "environment, or snapshot(world)"
         )
-    with batch.alone:
-        batch.restore(*state)
+    batch.alone.run(batch.restore, *state)
 
 
 def _unpack(

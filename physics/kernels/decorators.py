@@ -20,6 +20,7 @@ from .numba_internals import (
     cache_in,
     compile_once_for_constants,
     compiler_state,
+    hold_signals,
     is_interpreted,
     refuse_python,
 )
@@ -76,6 +77,7 @@ def _compile(function: F, **options: bool) -> F:
         return function
     compiled: F = _njit(function, **_ALWAYS, **WITHOUT_C_ENTRY, **options)
     compile_once_for_constants(compiled)
+    hold_signals(compiled)
     # The options are a part of the key: Numba's own does not hold them.
     compiler = f"{compiler_state()} {sorted(options.items())}"
     folder = writable_folder(Path(function.__code__.co_filename), compiler)

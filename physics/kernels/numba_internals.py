@@ -9,6 +9,7 @@ has one test for each part, which says what is missing and where it is used:
 ``njit(_nrt=..., no_c..._wrapper)`` to leave out code that kernels do not need
 ``Dispatcher.get_call_template``    to compile once for constants and variables
 ``types.unliteral``                 the same
+``Dispatcher.compile``              to hold back signals while it loads or compiles
 ``CPUDispatcher``                   to refuse a call from Python that would crash
 ``Dispatcher._cache``               to put our cache in place of Numba's
 ``FunctionCache``                   our cache is a subclass
@@ -38,6 +39,7 @@ from numba.np.arrayobj import make_array, populate_array
 
 from .code_files import CodeFiles
 from .digest import PACKAGE
+from .held_signals import held_signals
 from .messages import say_compiling, say_unwritable
 
 # Numba says that it is typed and hardly is, differently in every release.
@@ -82,6 +84,21 @@ def compile_once_for_constants(dispatcher: Any) -> None:
         return template(plain, named)
 
     dispatcher.get_call_template = get_call_template
+
+
+def hold_signals(dispatcher: Any) -> None:
+    """Let Ctrl-C wait until a kernel is loaded, or compiled.
+
+    Numba and LLVM would stay locked for all other threads, where it comes at a bad moment. While a
+    kernel is compiled, it comes as soon as one of those that it calls is finished.
+    """
+    plain = dispatcher.compile
+
+    def compile_whole(signature: Any) -> Any:
+        with held_signals():
+            return plain(signature)
+
+    dispatcher.compile = compile_whole
 
 
 class InnerDispatcher(CPUDispatcher):  # type: ignore[misc]

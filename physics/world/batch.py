@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from ..arguments import whole
 from ..body import FloatArray
+from ..kernels.one_thread import OneThread
 from ..kernels.threads import Threads
 from .records import Clock
 from .states import Stepper, checked_step, pack_states, unpack_states
@@ -19,6 +20,9 @@ class WorldBatch:
 
     Each copy has its own moving bodies; static bodies are shared. Each copy gives the same bits as
     the world alone would, for any number of copies and threads.
+
+    A batch belongs to one thread at a time: `step`, `snapshot` and `restore` raise a RuntimeError
+    while another call of them is in progress.
 
     Args:
         world: the world to copy, as it is now. It does not change.
@@ -50,6 +54,7 @@ class WorldBatch:
         ]
         self._threads = Threads("arkanoid-worlds")
         self._closed = False
+        self._alone = OneThread("this batch of worlds")
 
     def __len__(self) -> int:
         return len(self._states)
@@ -73,11 +78,22 @@ class WorldBatch:
         Raises:
             ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
                 large for a number.
-            RuntimeError: the batch has several threads and is closed.
+            RuntimeError: the batch has several threads and is closed, or another call is in
+                progress.
         """
         length, count = checked_step(dt, steps)
-        if len(self._steppers) == 1:
-            return self._steppers[0].step(length, count)
+        alone = self._alone
+        if alone.taken:
+            alone.refuse()
+        alone.taken = True
+        try:
+            if len(self._steppers) == 1:
+                return self._steppers[0].step(length, count)
+            return self._step_parts(length, count)
+        finally:
+            alone.taken = False
+
+    def _step_parts(self, length: float, count: int) -> npt.NDArray[Any]:
         if self._closed:
             raise RuntimeError("step() after the shutdown of the batch's threads by close()")
         parts = self._threads.run(lambda part: part.step(length, count), self._steppers)
@@ -87,7 +103,7 @@ class WorldBatch:
 
     def snapshot(self) -> bytes:
         """Return all that changes as the worlds are stepped, as bytes for `restore`."""
-        return pack_states(self._states, self._setup)
+        return self._alone.run(pack_states, self._states, self._setup)
 
     def restore(self, snapshot: bytes) -> None:
         """Go back to a snapshot of a batch of this size of the same world.
@@ -95,7 +111,7 @@ class WorldBatch:
         Raises:
             ValueError: if it is corrupt, or of another batch. This batch does not change then.
         """
-        unpack_states(snapshot, self._states, self._setup)
+        self._alone.run(unpack_states, snapshot, self._states, self._setup)
 
     def close(self) -> None:
         """End the threads, if there are any."""

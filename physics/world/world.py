@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ..arguments import finite, integer, inverse_mass, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..errors import HitLimitWarning
+from ..kernels.one_thread import OneThread
 from ..protocols import Collidable
 from ..shapes.colliders import AxisAlignedRectangle, Collider, Particle
 from .forms import Built, Scene
@@ -50,6 +51,9 @@ class World:
     no body tunnels through another at any speed, and no time is lost. Relaxation is for bodies that
     overlap when a step begins.
 
+    A world belongs to one thread at a time: `step`, `snapshot` and `restore` raise a RuntimeError
+    while another call of them is in progress.
+
     Args:
         bodies: added in this order, see `add`.
         continuous: if False, each step is the procedure of the lecture on collisions in games
@@ -66,6 +70,7 @@ class World:
         # form is ahead of it.
         self._scene = Scene(bool(continuous), whole("max_hits", max_hits, at_least=1))
         self._built: Built | None = None
+        self._alone = OneThread("this world")
         for body in bodies:
             self.add(body)
 
@@ -180,10 +185,18 @@ class World:
             InseparableError: no finite translation separates two solid bodies of which one moves.
             ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
                 large for a number.
+            RuntimeError: another call is in progress.
         """
         length, count = checked_step(dt, steps)
-        built = self._built or self.built()  # most steps save a call
-        hits = built.stepper.step(length, count)
+        alone = self._alone
+        if alone.taken:
+            alone.refuse()
+        alone.taken = True
+        try:
+            built = self._built or self.built()  # most steps save a call
+            hits = built.stepper.step(length, count)
+        finally:
+            alone.taken = False
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
@@ -234,7 +247,7 @@ class World:
     def snapshot(self) -> bytes:
         """Return all that changes as the world is stepped, as bytes for `restore`."""
         built = self.built()
-        return pack_states(built.states, built.setup)
+        return self._alone.run(pack_states, built.states, built.setup)
 
     def restore(self, snapshot: bytes) -> None:
         """Go back to a snapshot of this world, or of one with the same bodies.
@@ -243,7 +256,7 @@ class World:
             ValueError: if it is corrupt, or of another world. This world does not change then.
         """
         built = self.built()
-        unpack_states(snapshot, built.states, built.setup)
+        self._alone.run(unpack_states, snapshot, built.states, built.setup)
         built.warned = built.capped
 
     def built(self) -> Built:
@@ -260,6 +273,7 @@ class World:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._scene = copy.deepcopy(state["scene"])
         self._built = None
+        self._alone = OneThread("this world")
         if state["snapshot"] is not None:
             self.restore(state["snapshot"])
 

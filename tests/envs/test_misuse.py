@@ -1,6 +1,8 @@
 """Environments that are used wrongly: the mistake is named, and nothing goes on behind it."""
 
+import signal
 import threading
+from contextlib import nullcontext
 
 import arkanoid  # noqa: F401
 import gymnasium as gym
@@ -10,6 +12,7 @@ from arkanoid.agents.adapter import GymnasiumVecEnv
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from helpers.interrupts import interrupted_at
 from helpers.processes import run_program
 
 MODES = list(AutoresetMode)
@@ -319,6 +322,117 @@ batch.close()
 """,
         warnings="default",
         timeout=200.0,
+    )
+
+
+def test_a_process_that_was_forked_during_a_step_may_step():
+    """The thread that was in the step is not in the child, which was refused for ever."""
+    run_program(
+        """
+import multiprocessing, sys, threading
+import numpy as np
+from arkanoid.envs import ArkanoidVectorEnv
+
+class Pause:
+    inside, go_on = threading.Event(), threading.Event()
+
+    def step(self):
+        self.inside.set()
+        self.go_on.wait(60)
+
+def step(env):
+    env._batch.listeners.remove(pause)
+    env.reset(seed=1)
+    for _ in range(3):
+        env.step(np.full(8, 3))
+
+env = ArkanoidVectorEnv(8, threads=2)
+env.reset(seed=0)
+env.step(np.full(8, 3))
+pause = Pause()
+env._batch.listeners.add(pause)
+thread = threading.Thread(target=env.step, args=(np.full(8, 3),))
+thread.start()
+assert pause.inside.wait(60)
+child = multiprocessing.get_context("fork").Process(target=step, args=(env,))
+child.start()
+child.join(60)
+assert child.exitcode == 0
+try:
+    env.reset()
+except RuntimeError:
+    pause.go_on.set()
+thread.join(60)
+step(env)
+env.close()
+""",
+        warnings="default",
+        timeout=200.0,
+    )
+
+
+@pytest.mark.parametrize("mode", [each.value for each in AutoresetMode])
+def test_a_step_goes_on_wherever_ctrl_c_has_come(mode):
+    """In same-step mode, a world whose episode was over then went on behind its end."""
+    came, event = True, 0
+    while came:
+        event += 1
+        env = ArkanoidVectorEnv(2, autoreset_mode=mode, **LIVELY | {"max_decisions": 5})
+        env.reset(seed=event)
+        actions = np.full(2, 3)
+        for _ in range(4):
+            env.step(actions)
+        came = interrupted_at(event, lambda env=env, actions=actions: env.step(actions))
+        if mode == "Disabled":
+            with pytest.raises(ResetNeeded) if (env.state["done"] != 0).any() else nullcontext():
+                env.step(actions)
+            env.reset()
+        observations, rewards, *_ = env.step(actions)
+        assert env.observation_space.contains(observations)
+        assert np.isfinite(rewards).all()
+        assert mode != "SameStep" or not env.state["done"].any()
+        env.close()
+    assert event > 5
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no timers")
+def test_ctrl_c_in_steps_with_threads_hangs_nothing():
+    """It came between two steps of a lock of Python's pool, which stayed locked."""
+    run_program(
+        """
+import random, signal, threading, time
+import numpy as np
+from arkanoid.envs import ArkanoidVectorEnv
+
+def interrupt(number, frame):
+    raise KeyboardInterrupt
+
+signal.signal(signal.SIGALRM, interrupt)
+env = ArkanoidVectorEnv(256, threads=2)
+env.reset(seed=0)
+actions = np.full(256, 3)
+env.step(actions)
+came = 0
+end = time.monotonic() + 3.0
+while came < 21 or time.monotonic() < end:
+    try:
+        signal.setitimer(signal.ITIMER_REAL, random.uniform(1e-5, 3e-4))
+        env.step(actions)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+    except KeyboardInterrupt:
+        came += 1
+        state = env.state.tobytes()
+        time.sleep(0.0005)
+        assert env.state.tobytes() == state
+assert came > 20
+steps = []
+thread = threading.Thread(target=lambda: steps.append(env.step(actions)))
+thread.start()
+thread.join(30)
+assert len(steps) == 1
+env.close()
+""",
+        timeout=100.0,
     )
 
 

@@ -11,7 +11,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from arkanoid.envs import ArkanoidEnv
+from arkanoid.envs.arkanoid_env import _results
 from arkanoid.envs.registration import GAMES
+from arkanoid.envs.state import INFO_FIELDS
 from gymnasium import spaces
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.utils.env_checker import check_env
@@ -213,3 +215,20 @@ def test_gymnasiums_limit_as_a_keyword_is_told_ours():
 def test_bad_values_of_keywords_are_refused(keywords, error, message):
     with pytest.raises(error, match=message):
         ArkanoidEnv(**keywords)
+
+
+def test_info_and_results_are_the_fields_of_the_outcome():
+    """`step` takes them from the outcome by their places."""
+    env = ArkanoidEnv()
+    env.reset(seed=0)
+    outcomes = env._batch.outcomes
+    for number, name in enumerate(outcomes.dtype.names):
+        outcomes[name] = number
+    (outcome,) = outcomes.tolist()
+    reward, *_, info = _results(outcome)
+    assert list(info) == list(INFO_FIELDS)
+    assert info == {key: outcomes[field][0] for key, field in INFO_FIELDS.items()}
+    assert reward == outcomes["reward"][0]
+    outcomes["terminated"], outcomes["truncated"] = True, False
+    (outcome,) = outcomes.tolist()
+    assert _results(outcome)[1:3] == (True, False)

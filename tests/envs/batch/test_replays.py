@@ -1,7 +1,6 @@
 """Recorded games: small files, and each is played again bit for bit or refused."""
 
 import dataclasses
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +18,7 @@ from arkanoid.envs.batch import replays
 from arkanoid.envs.batch.playback import replay_states
 from arkanoid.envs.batch.recorder import NOTE_EVERY
 from gymnasium.error import ResetNeeded
+from helpers.interrupts import interrupted_at
 from helpers.processes import INTERPRETED, run_program
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -320,28 +320,6 @@ def test_the_recording_changes_no_bit_of_the_game():
         env.reset(seed=0)
         play(env, 100)
     assert recorded.snapshot() == other.snapshot()
-
-
-def interrupted_at(event, function):
-    """Call a function; Ctrl-C comes with its n-th call of ours. Tell whether it came."""
-    left = event
-
-    def profile(frame, kind, argument):
-        nonlocal left
-        # Python looks for signals where a function begins.
-        if kind == "call" and frame.f_globals.get("__name__", "").startswith("arkanoid."):
-            left -= 1
-            if left == 0:
-                raise KeyboardInterrupt
-
-    sys.setprofile(profile)
-    try:
-        function()
-    except KeyboardInterrupt:
-        return True
-    finally:
-        sys.setprofile(None)
-    return False
 
 
 @pytest.mark.parametrize("mode", ["single", "SameStep"])

@@ -189,3 +189,21 @@ def test_a_borrowed_view_looks_into_its_block() -> None:
 
     block = np.arange(4)
     expect(third(block.view(np.uint8)) == 2, "array", "borrowed_view")
+
+
+def test_compile_is_asked_for_on_the_dispatcher() -> None:
+    compiled = numba.njit(double)
+    plain = getattr(compiled, "compile", None)
+    expect(plain is not None, "Dispatcher.compile", "hold_signals")
+    asked = []
+
+    def compile_whole(signature: Any) -> Any:
+        asked.append(signature)
+        return plain(signature)
+
+    compiled.compile = compile_whole
+    assert numba.njit(lambda: compiled(2))() == 4
+    assert len(asked) > 0, "for a caller"
+    del asked[:]
+    compiled(2.0)
+    expect(len(asked) == 1, "Dispatcher.compile(signature)", "hold_signals")
