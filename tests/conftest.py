@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -23,5 +24,8 @@ class RootIsNotATestPackage:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # On a busy machine a correct test may take long.
+    settings.register_profile("no deadline", deadline=None)
+    settings.load_profile("no deadline")
     # Not a plain hook: those of a conftest are asked about what lies below its own folder only.
     config.pluginmanager.register(RootIsNotATestPackage())

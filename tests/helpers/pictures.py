@@ -37,7 +37,7 @@ from shapely import Polygon, area, box, intersection
 from shapely.affinity import affine_transform
 
 # The first example of a size draws its background and may compile kernels.
-PROPERTY = settings(deadline=None, max_examples=40)
+PROPERTY = settings(max_examples=40)
 
 
 SIZES = [(84, 84), (210, 160), (512, 384)]
