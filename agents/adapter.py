@@ -83,6 +83,16 @@ class GymnasiumVecEnv(VecEnv):
         self._reset_options()
         return _own(observations)
 
+    def set_seeds(self, seeds: Sequence[int]) -> None:
+        """Give each world its own seed for the next reset.
+
+        `seed`, which stable-baselines3 calls, gives world ``i`` the seed plus ``i``: neighbouring
+        seeds share almost all worlds. Raises ValueError unless there is one seed for each world.
+        """
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"{len(seeds)} seeds for {self.num_envs} worlds; give one for each")
+        self._seeds = list(seeds)
+
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take the actions [worlds, ...]; `step_wait` carries them out."""
         self._actions = actions

@@ -19,7 +19,7 @@ from arkanoid.envs.levels.starts import START_OPTIONS
 from arkanoid.envs.observe import planes, vector
 from arkanoid.envs.observe.layout import Part, slices
 from arkanoid.envs.registration import GAMES
-from arkanoid.envs.state import DECISION_LIMIT, IDLE, INFO_MEANINGS
+from arkanoid.envs.state import DECISION_LIMIT, INFO_MEANINGS
 
 PAGE = Path(__file__).with_name("environment.md")
 IDS = {
@@ -305,9 +305,15 @@ the configuration.
 ## Episode End
 
 - *Terminated*: the last life is lost.
-- *Truncated*: after `max_decisions` decisions (`info["truncation"]` is {DECISION_LIMIT}), or
-  after {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss ({IDLE}). Observations show
-  both clocks.
+- *Truncated*: after `max_decisions` decisions (`info["truncation"]` is {DECISION_LIMIT}).
+
+Idling is no way out: {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss cost a life,
+as a lost ball does. All balls in play are gone then, and the next one is served. Each new serve and
+each damage start the idle clock anew. Observations show both clocks.
+
+A cut ends the rewards, but not the game: training should count the value of the last observation,
+as `arkanoid train` does. Otherwise it would pay to keep the lives until `max_decisions`. The
+`life_penalty` is also due for extra lives: if it exceeds what a life earns, extra lives are a loss.
 
 Before the first reset, a step, a frame or masks raise `gymnasium.error.ResetNeeded`. So does a step
 after an episode's end, unless the vector environment resets by itself (`autoreset_mode`).

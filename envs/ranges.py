@@ -35,7 +35,7 @@ from .rules import (
     SPEED_STAGE_MIN,
     UNBREAKABLE,
 )
-from .state import DIVING, FLYING, GIVEN_SEED, IDLE, LIFE_LOST
+from .state import DECISION_LIMIT, DIVING, FLYING, GIVEN_SEED, LIFE_LOST
 
 Range = tuple[float, float]  # the least and the largest legal number
 
@@ -153,7 +153,7 @@ OUTCOME_RANGES: dict[str, Range] = {
     "lives_lost": (0, 32767),
     "rounds_cleared": (0, 32767),
     "bricks_left": (0, CELLS),
-    "truncation": (0, IDLE),
+    "truncation": (0, DECISION_LIMIT),
     "terminated": _FLAG,
     "truncated": _FLAG,
 }

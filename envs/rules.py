@@ -7,7 +7,7 @@ freezes globals.
 
 # Raise this with every change after which a game may take another course: replays and snapshots of
 # other versions are refused.
-RULES_VERSION = 2
+RULES_VERSION = 3
 
 TICKS_PER_SECOND = 60
 
@@ -50,7 +50,7 @@ LOOP_BOUNCES = 64
 LOOP_TURN_MIN = 10.0  # degrees
 LOOP_TURN_MAX = 20.0
 
-IDLE_TICKS = 3600  # without damage to a brick: the episode is truncated
+IDLE_TICKS = 3600  # without damage to a brick or the boss: they cost a life
 # More hits of one ball in one tick than the fastest ball of the rules can make in a full field.
 HITS_PER_TICK = 64
 

@@ -29,7 +29,6 @@ LIFE_LOST = 2  # with `episodic_life`: the next episode goes on with the game
 # Why an episode was truncated (`Outcome.truncation`).
 NOT_TRUNCATED = 0
 DECISION_LIMIT = 1
-IDLE = 2
 
 # Where an episode gets its first round from (`World.start`).
 AS_CONFIGURED = 0
@@ -98,7 +97,7 @@ World = record_dtype(
         ("ball_state", np.int32, (MAX_BALLS,)),
         ("ball_release", np.int32, (MAX_BALLS,)),  # ticks until a held ball leaves by itself
         ("ball_bounces", np.int32, (MAX_BALLS,)),  # without damage or paddle contact
-        ("idle", np.int32),  # ticks since a brick or the boss was damaged
+        ("idle", np.int32),  # ticks without damage; a new serve starts it anew
         ("needed", np.int32),  # hits that clear the round, at its beginning
         ("hits_left", np.int32),  # hits that still clear the round
         ("bricks_left", np.int32),  # breakable bricks
@@ -192,7 +191,7 @@ INFO_MEANINGS = {
     "lives": "balls left, the present one included",
     "round": "the number of the round, from 1",
     "bricks_left": "breakable bricks left",
-    "truncation": "why the episode was truncated: 0 it was not, 1 `max_decisions`, 2 no damage",
+    "truncation": "why the episode was truncated: 0 it was not, 1 `max_decisions`",
     "hits": "hits on bricks and the boss that the round needs, in this decision",
     "bricks_broken": "how many, in this decision",
     "capsules_caught": "how many, in this decision",

@@ -10,15 +10,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.usage = "%(prog)s [MODEL] [--level LEVEL] [--trust] [--key value ...]"
     add_model(parser)
     add_level(parser)
-    parser.epilog = (
-        "Games with the evaluation's seeds follow each other until you close the window."
-    )
+    parser.epilog = "The evaluation's games follow each other until you close the window."
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Show games until the window is closed; return the exit status."""
     from ..experiment.runs import ModelFile
-    from ..experiment.settings import seeded
 
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.run.experiment(overrides)
@@ -33,15 +30,15 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     smooth = can_be_smooth(experiment)
     window = Window("Arkanoid", frame_rate(experiment, smooth))
     try:
-        seed = experiment.evaluation.seed
+        episode = 0
         while not window.closed:
             frame = None
-            for frame in play_frames(seeded(experiment, seed), policy, start, smooth):
+            for frame in play_frames(experiment, policy, start, smooth, episode):
                 if not window.show(frame.picture):
                     break
             if frame is not None:
-                print(f"seed {seed}: score {frame.score}, round {frame.round}")
-            seed = (seed + 1) % 2**32
+                print(f"game {episode + 1}: score {frame.score}, round {frame.round}")
+            episode += 1
     finally:
         window.close()
     return 0

@@ -50,6 +50,10 @@ def _is_list(value: Any) -> bool:
     return type(value) is list
 
 
+def _are_texts(value: Any) -> bool:
+    return type(value) is list and all(map(_is_text, value))
+
+
 def _are_facts(value: Any) -> bool:
     """Tell whether a value is a table of facts, or None where there are none."""
     if value is None:
@@ -64,6 +68,7 @@ _NOTES: dict[str, Callable[[Any], bool]] = {
     "seed": _is_count,
     "timesteps": _is_count,
     "sessions": _is_list,
+    "warnings": _are_texts,
     "versions": _are_facts,
     "git": _are_facts,
     "hardware": _are_facts,

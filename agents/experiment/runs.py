@@ -136,6 +136,12 @@ class RunFolder:
         text = json.dumps({**self.read_notes(), **values}, indent=2) + "\n"
         write_atomically(self.notes, text.encode())
 
+    def add_warning(self, message: str) -> None:
+        """Write down a warning; `read_notes` has all of them in the list ``warnings``."""
+        earlier = self.read_notes().get("warnings", [])
+        # A resumed run may come to the same warning again.
+        self.add_notes(warnings=[*earlier, *([] if message in earlier else [message])])
+
     def note_session(self, started: float, first: int, last: int) -> None:
         """Note a session that trains from decision ``first`` and has come to ``last``.
 

@@ -172,7 +172,7 @@ class Validation:
         'files or seeds ("seeds:9000-9019"); without any: whole games as in the training',
     )
     episodes: Count = Field(default=20, description="episodes of each level, one per seed")
-    seed: Seed = Field(default=500_000, description="the first seed")
+    seed: Seed = Field(default=500_000, description="spread over the episodes")
     best: BestMeasure = Field(
         default="return", description="the best model has the largest mean of this"
     )
@@ -200,7 +200,7 @@ class Evaluation:
         default=2, description="most of these that the planner plays, which is slow"
     )
     generated: Count = Field(default=20, description="generated levels in a suite")
-    seed: Seed = Field(default=1_000_000, description="the first seed")
+    seed: Seed = Field(default=1_000_000, description="spread over the episodes")
     deterministic: Switch = Field(
         default=True, description="whether a policy takes the likeliest action or draws one"
     )
@@ -297,8 +297,3 @@ def load_experiment(config: str, overrides: Sequence[tuple[str, str]] = ()) -> E
     """
     source, table = read_toml(config)
     return read_settings(Experiment, table, source, overrides)
-
-
-def seeded(experiment: Experiment, seed: int) -> Experiment:
-    """Return the experiment with another first seed of its evaluation."""
-    return replace(experiment, evaluation=replace(experiment.evaluation, seed=seed))

@@ -20,6 +20,7 @@ from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
 from ..experiment.provenance import memory_gib
 from ..experiment.runs import ModelFile
+from ..experiment.seeds import Purpose, spread_seed
 from ..experiment.settings import Experiment, Ppo
 from ..experiment.worlds import make_worlds, native
 from ..measure.policy import Policy
@@ -88,7 +89,8 @@ def load_policy(model: ModelFile, experiment: Experiment) -> Policy:
     torch.set_num_threads(experiment.training.torch_threads)
     network = _unpickled(model.path) if model.run.trusted else _rebuilt(model, experiment)
     settings = experiment.evaluation
-    return ModelPolicy(network, settings.deterministic, settings.seed)
+    seed = spread_seed(settings.seed, Purpose.EVALUATION_POLICY)
+    return ModelPolicy(network, settings.deterministic, seed)
 
 
 class ModelPolicy:

@@ -3,13 +3,17 @@
 from collections.abc import Callable
 from typing import Any
 
+from gymnasium.spaces import Discrete
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
+from ..experiment.seeds import Purpose, spread_seed, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
 from ..measure.episodes import MEASURES, play_episodes
+from ..measure.policy import Policy
 from ..measure.suites import WHOLE_GAMES, find_starts
+from .collapse import Warn, Watched, stuck_warning
 from .model import ModelPolicy
 
 _LOGGED = tuple(name for name in MEASURES if name != "bricks_left")
@@ -29,6 +33,7 @@ class PeriodicValidation(BaseCallback):
         on_best: gets each model that is the best so far.
         stop: gets the reason when the training should end.
         judge: gets each measurement, and may return a reason to end the training.
+        warn: gets a warning when the policy has collapsed on a level in two measurements.
     """
 
     def __init__(
@@ -38,6 +43,7 @@ class PeriodicValidation(BaseCallback):
         on_best: Callable[[PPO], None],
         stop: Callable[[str], None],
         judge: Judge | None = None,
+        warn: Warn = lambda message: None,
     ) -> None:
         super().__init__()
         self._experiment = experiment
@@ -50,6 +56,9 @@ class PeriodicValidation(BaseCallback):
         self._on_best = on_best
         self._stop = stop
         self._judge = judge
+        self._warn = warn
+        self._stuck: set[int] = set()
+        self._told: set[int] = set()
         levels = self._settings.levels
         self._whole_games = not levels
         self._starts = find_starts(experiment, levels) if levels else (WHOLE_GAMES,)
@@ -94,12 +103,29 @@ class PeriodicValidation(BaseCallback):
 
     def _play(self) -> dict[str, float]:
         deterministic = self._experiment.evaluation.deterministic
-        policy = ModelPolicy(self.model, deterministic, self._settings.seed)  # type: ignore[arg-type]
+        settings = self._settings
+        seed = spread_seed(settings.seed, Purpose.VALIDATION_POLICY)
+        policy: Policy = ModelPolicy(self.model, deterministic, seed)  # type: ignore[arg-type]
+        watched = None
+        if isinstance(self.model.action_space, Discrete) and not self._whole_games:
+            policy = watched = Watched(policy, self.model, self._worlds.num_envs)
         self.model.policy.set_training_mode(False)
+        seeds = spread_seeds(settings.seed, Purpose.VALIDATION, settings.episodes)
         played = play_episodes(
-            self._worlds, policy, self._settings.seed, self._starts, whole_games=self._whole_games
+            self._worlds, policy, seeds, self._starts, whole_games=self._whole_games
         )
+        if watched is not None:
+            self._tell_stuck(set(watched.stuck(played["cleared"])))
         return {name: float(values.mean()) for name, values in played.items()}
+
+    def _tell_stuck(self, stuck: set[int]) -> None:
+        """Warn, once, of levels on which the policy is stuck, and was in the last measurement."""
+        new = sorted((stuck & self._stuck) - self._told)
+        self._stuck = stuck
+        self._told |= set(new)
+        if new:
+            names = [self._starts[level].name for level in new]
+            self._warn(stuck_warning(names, self.model.num_timesteps))
 
     def close(self) -> None:
         """Close the environment."""

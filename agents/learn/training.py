@@ -2,6 +2,7 @@
 
 import errno
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -12,17 +13,20 @@ from typing import Any
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputFormat
 from torch.utils.tensorboard import SummaryWriter
+from tqdm import tqdm  # type: ignore[import-untyped]
 
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
 from ..experiment.files import cause, quoted
 from ..experiment.provenance import weights_hash
 from ..experiment.runs import RunFolder
+from ..experiment.seeds import Purpose, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
 from ..measure.episodes import adapt
 from .callbacks import GameStatistics, ProgressBar, StopRequest
 from .checkpoints import Checkpoints, resume
+from .collapse import CollapseWatch, Warn
 from .curves import CurveWriter
 from .model import make_model, save_model
 from .periodic_validation import Judge, PeriodicValidation
@@ -107,9 +111,16 @@ def _train(
     if resumed:
         callback_state = resume(folder.checkpoint, model, venv)
     else:
+        # stable-baselines3 has just given the worlds neighbouring seeds.
+        venv.set_seeds(spread_seeds(experiment.seed, Purpose.TRAINING, venv.num_envs))
         venv.set_options(stage_options(experiment.curriculum, 0, venv.num_envs))
     stop = StopRequest()
-    validation = _validation(experiment, folder, callback_state, stop, on_measure)
+
+    def warn(message: str) -> None:
+        tqdm.write(f"arkanoid: warning: {message}", file=sys.stderr)
+        folder.add_warning(message)
+
+    validation = _validation(experiment, folder, callback_state, stop, on_measure, warn)
     first, started = model.num_timesteps, time.time()
     checkpoints = Checkpoints(
         folder.checkpoint,
@@ -120,7 +131,8 @@ def _train(
     )
     # Checkpoints come after the callbacks whose state they hold.
     stages = Stages(experiment, venv, callback_state)
-    callbacks: list[BaseCallback] = [GameStatistics(), stages]
+    watch = CollapseWatch(experiment, callback_state, warn)
+    callbacks: list[BaseCallback] = [GameStatistics(), watch, stages]
     callbacks += [validation] if validation is not None else []
     progress = ProgressBar()
     callbacks += [checkpoints, progress, stop]
@@ -175,6 +187,7 @@ def _validation(
     callback_state: dict[str, Any],
     stop: StopRequest,
     on_measure: Judge | None,
+    warn: Warn,
 ) -> PeriodicValidation | None:
     if not experiment.validation.every:
         return None
@@ -184,6 +197,7 @@ def _validation(
         lambda model: save_model(model, folder.best),
         stop.request,
         on_measure,
+        warn,
     )
 
 

@@ -16,6 +16,7 @@ from ..experiment.errors import SettingsError
 from ..experiment.files import cause
 from ..experiment.reading import check_value, read_toml
 from ..experiment.runs import RunFolder
+from ..experiment.seeds import Purpose, spread_seed
 from ..experiment.settings import BEST, Experiment, load_experiment
 
 if TYPE_CHECKING:
@@ -192,7 +193,8 @@ def open_study(folder: Path, space: SearchSpace, seed: int) -> "optuna.Study":
             f"with a copy, or remove it to begin a new study"
         ) from None
     # A resumed search must not repeat its first draws.
-    study.sampler = optuna.samplers.TPESampler(seed=seed + len(study.trials))
+    draws = spread_seed(seed, Purpose.SAMPLER, len(study.trials), bits=32)
+    study.sampler = optuna.samplers.TPESampler(seed=draws)
     study.pruner = optuna.pruners.MedianPruner(space.startup, space.warmup)
     return study
 
@@ -283,7 +285,8 @@ def _run_trial(
         experiment,
         name=f"trial{trial.number}",
         output=str(folder),
-        seed=(experiment.seed + trial.number) % 2**32,
+        # No seed that anyone would choose: the best settings are trained anew with other ones.
+        seed=spread_seed(experiment.seed, Purpose.TRIAL, trial.number, bits=32),
     )
     latest = float("-inf")
 

@@ -8,6 +8,7 @@ from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
 from ...envs.config import Config
+from ..experiment.seeds import Purpose, spread_seed, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
 from .baselines import make_baseline
@@ -87,12 +88,13 @@ def _play_baseline(
     planned = name == "planner"
     episodes = min(suite.episodes, settings.planner_episodes) if planned else suite.episodes
     config = experiment.config.of_the_game()
+    seed = spread_seed(settings.seed, Purpose.EVALUATION_POLICY)
     return _play(
         experiment,
         suite,
         episodes,
         config,
-        lambda worlds: make_baseline(name, worlds, settings.seed),
+        lambda worlds: make_baseline(name, worlds, seed),
     )
 
 
@@ -109,7 +111,7 @@ def _play(
         return play_episodes(
             worlds,
             make_policy(worlds),
-            experiment.evaluation.seed,
+            spread_seeds(experiment.evaluation.seed, Purpose.EVALUATION, episodes),
             suite.starts,
             suite.whole_games,
         )
@@ -199,7 +201,7 @@ def as_json(
     return {
         "env_id": experiment.env_id,
         "env": experiment.config.plain(),
-        "first_seed": settings.seed,
+        "seed": settings.seed,
         "deterministic": settings.deterministic,
         "models": {name: list(of_agent) for name, of_agent in models.items()},
         "suites": {

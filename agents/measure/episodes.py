@@ -27,7 +27,7 @@ def adapt(worlds: VectorEnv[Any, Any, Any]) -> GymnasiumVecEnv:
 def play_episodes(
     worlds: VectorEnv[Any, Any, Any],
     policy: Policy,
-    seed: int,
+    seeds: Sequence[int],
     starts: Sequence[EpisodeStart] = (WHOLE_GAMES,),
     whole_games: bool = True,
 ) -> dict[str, NDArray[np.float64]]:
@@ -37,9 +37,9 @@ def play_episodes(
     world counts: to take whichever episodes end first would favour short ones.
 
     Args:
-        worlds: native and in SAME_STEP mode, as many as there are levels times episodes.
+        worlds: native and in SAME_STEP mode, as many as there are levels times seeds.
         policy: who plays.
-        seed: of each level's first episode; the next episodes get the following seeds.
+        seeds: of each level's episodes.
         starts: how episodes begin, one for each level.
         whole_games: whether an episode lasts until the game is over, or until its level is cleared.
 
@@ -47,10 +47,7 @@ def play_episodes(
         For each of `MEASURES` an array [episodes, levels].
     """
     count = worlds.num_envs
-    episodes = count // len(starts)
-    if episodes * len(starts) != count:
-        raise ValueError(f"{count} worlds are not the same number for each of {len(starts)} levels")
-    observations, _ = begin_episodes(worlds, seed, starts, episodes)
+    observations, _ = begin_episodes(worlds, seeds, starts)
     measured = {name: np.zeros(count) for name in MEASURES}
     playing = np.arange(count)
     space = worlds.single_action_space
@@ -73,10 +70,15 @@ def play_episodes(
 
 
 def begin_episodes(
-    worlds: VectorEnv[Any, Any, Any], seed: int, starts: Sequence[EpisodeStart], episodes: int
+    worlds: VectorEnv[Any, Any, Any], seeds: Sequence[int], starts: Sequence[EpisodeStart]
 ) -> tuple[Any, dict[str, Any]]:
     """Begin the episodes of every level, level by level; return observations and infos."""
-    seeds = [seed + episode for _ in starts for episode in range(episodes)]
+    episodes = len(seeds)
+    if episodes * len(starts) != worlds.num_envs:
+        raise ValueError(
+            f"{worlds.num_envs} worlds for {len(starts)} levels times {episodes} episodes"
+        )
+    of_worlds = [seed for _ in starts for seed in seeds]
     observations: Any = None
     infos: dict[str, Any] = {}
     for index, start in enumerate(starts):
@@ -85,7 +87,7 @@ def begin_episodes(
         # Without these the options of a world's earlier episodes would stay in force.
         as_configured = {"level": None, "difficulty": None}
         options = {**as_configured, **(start.options or {}), "reset_mask": mask}
-        observations, infos = worlds.reset(seed=seeds, options=options)  # type: ignore[arg-type]
+        observations, infos = worlds.reset(seed=of_worlds, options=options)  # type: ignore[arg-type]
     return observations, infos
 
 

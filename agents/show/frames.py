@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...envs.rules import TICKS_PER_SECOND
+from ..experiment.seeds import Purpose, spread_seed
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
 from ..measure.episodes import begin_episodes
@@ -75,8 +76,9 @@ def play_frames(
     policy: Policy,
     start: EpisodeStart = WHOLE_GAMES,
     smooth: bool = False,
+    episode: int = 0,
 ) -> Iterator[Frame]:
-    """Yield pictures of the first evaluation episode: at its beginning and after each step.
+    """Yield pictures of an evaluation episode: at its beginning and after each step.
 
     With ``smooth`` a step is a tick. The policy still decides as often as it was trained to, and
     the game is the same.
@@ -88,7 +90,8 @@ def play_frames(
     worlds = make_worlds(experiment, 1, config, render_mode="rgb_array")
     only = np.zeros(1, np.int64)
     try:
-        observations, infos = begin_episodes(worlds, experiment.evaluation.seed, (start,), 1)
+        seed = spread_seed(experiment.evaluation.seed, Purpose.EVALUATION, episode)
+        observations, infos = begin_episodes(worlds, [seed], (start,))
         yield _frame(worlds, infos)
         while True:
             actions = policy(observations, only)

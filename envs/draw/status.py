@@ -35,7 +35,7 @@ class StatusPart(NamedTuple):
 
 _BITS = "a bright unit is 1, the highest bit is on the left"
 STATUS_PARTS = (
-    StatusPart("idle_clock", 0, 0, 6, "bar from the left: ticks since the last damage / 3600"),
+    StatusPart("idle_clock", 0, 0, 6, "bar from the left: ticks without damage / 3600"),
     StatusPart("decision_clock", 0, 6, 6, "bar from the left: decisions / `max_decisions`"),
     StatusPart("lives", 0, 12, 4, f"lives, at most 15, in binary: {_BITS}"),
     StatusPart("round", 0, 16, 6, "the round's number, at most 63, in binary"),

@@ -27,7 +27,6 @@ def begin_episode(world: WorldRecord, rules: RulesRecord, levels: Levels) -> Non
     world.first_random = world.random
     world.done = 0
     world.decisions = 0
-    world.idle = 0
     world.score = 0
     world.lives = rules.lives
     world.next_life = EXTRA_LIFE_FIRST
@@ -94,8 +93,9 @@ def _lay_round(world: WorldRecord, rules: RulesRecord, boss: int) -> None:
 
 @inner
 def _begin_serve(world: WorldRecord, rules: RulesRecord) -> None:
-    """Lay a ball on the paddle, and remove everything that flies."""
+    """Lay a ball on the paddle, remove everything that flies, and start the idle clock."""
     lay_ball(world)
+    world.idle = 0
     world.exit_open = 0
     remove_capsule(world)
     remove_beams(world)

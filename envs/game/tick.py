@@ -11,7 +11,6 @@ from ..rules import (
 from ..state import (
     DECISION_LIMIT,
     FLYING,
-    IDLE,
     NOT_TRUNCATED,
     Levels,
     OutcomeRecord,
@@ -54,7 +53,7 @@ def play_decision(
     outcome.truncation = NOT_TRUNCATED
     for _ in range(rules.frame_skip):
         _reward_tick(world, rules, levels, outcome)
-        if outcome.terminated or outcome.truncation != NOT_TRUNCATED:
+        if outcome.terminated:
             break
     world.decisions += 1
     if world.decisions >= rules.max_decisions:
@@ -92,8 +91,6 @@ def _reward_tick(
     outcome.reward -= rules.life_penalty * (world.lives_lost - lost)
     if world.lives == 0:
         outcome.terminated = True
-    elif world.idle >= IDLE_TICKS:
-        outcome.truncation = IDLE
     if world.cleared == 1:
         world.rounds_cleared += 1
         world.round_number += 1
@@ -123,7 +120,7 @@ def _tick(world: WorldRecord, rules: RulesRecord) -> None:
     move_paddle(world)
     free_balls(world, rules)
     carry_balls(world)
-    if _lose_balls(world) or landed:
+    if _lose_balls(world) or landed or world.idle >= IDLE_TICKS:
         lose_life(world, rules)
 
 

@@ -75,7 +75,7 @@ CORE_PARTS = (
     Part("ball_vy", MAX_BALLS, "y velocity (the highest speed stage)"),
     Part("ball_release", MAX_BALLS, "ticks until a held ball leaves by itself / 120"),
     Part("speed_stage", 1, "the speed stage / 7"),
-    Part("idle_clock", 1, "ticks since the last damage / 3600; at 1 the episode is truncated"),
+    Part("idle_clock", 1, "ticks without damage / 3600; at 1 a life is lost"),
     Part("decision_clock", 1, "decisions / `max_decisions`; at 1 the episode is truncated"),
     Part("lives", 1, "1 / lives"),
     Part("bricks", CELLS, "row by row from the top: hits left / 8, at most 1; -1: gold; 0: empty"),

@@ -23,7 +23,7 @@ from .controls import Controls, Key
 # After a game the fire button does nothing for so long: a player who hammers it sees the score.
 OVER_TICKS = 40
 TITLE_TICKS = 90  # how long the title of a new round is shown
-WARNING_TICKS = 15 * TICKS_PER_SECOND  # the warning comes so long before the game is cut
+WARNING_TICKS = 15 * TICKS_PER_SECOND  # the warning comes so long before idling costs a life
 
 HELP = (
     "ARROWS OR MOUSE: MOVE   SPACE OR CLICK: FIRE",
@@ -189,9 +189,5 @@ class Sitting:
         return () if self._round_title().upper() == number else (number,)
 
     def _ending(self) -> tuple[str, tuple[str, ...]]:
-        world = self.world
-        title = "GAME OVER"
-        if world.lives:
-            title = f"{IDLE_TICKS // TICKS_PER_SECOND} SECONDS WITHOUT A HIT"
-        result = f"SCORE {world.score}   ROUND {world.round_number}"
-        return title, (result, "", "SPACE OR CLICK: PLAY AGAIN", "ESC: QUIT")
+        result = f"SCORE {self.world.score}   ROUND {self.world.round_number}"
+        return "GAME OVER", (result, "", "SPACE OR CLICK: PLAY AGAIN", "ESC: QUIT")

@@ -189,6 +189,16 @@ def test_returned_arrays_are_never_overwritten() -> None:
     assert rewards.flags.writeable
 
 
+def test_each_world_can_get_a_seed_of_its_own() -> None:
+    venv = adapted(Walk, 3)
+    venv.set_seeds([9, 5, 7])
+    seen = venv.reset()
+    for world, seed in enumerate((9, 5, 7)):
+        np.testing.assert_array_equal(seen[world], Walk().reset(seed=seed)[0])  # type: ignore[index]
+    with pytest.raises(ValueError, match="2 seeds for 3 worlds"):
+        venv.set_seeds([1, 2])
+
+
 def test_seeds_hold_for_the_next_reset_only() -> None:
     venv = adapted(Walk, 3)
     assert venv.seed(5) == [5, 6, 7]

@@ -7,6 +7,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from arkanoid.agents.experiment.errors import SettingsError
+from arkanoid.agents.experiment.seeds import Purpose, spread_seed, spread_seeds
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.measure.baselines import NoOp, make_baseline
@@ -34,7 +35,7 @@ def test_an_episode_depends_only_on_its_seed() -> None:
     """Against single environments, played one after the other by Gymnasium's own rules."""
     experiment = load_experiment("quick", [("env.lives", "1")])
     policy = follower(experiment)
-    played = play_episodes(make_worlds(experiment, 6), policy, seed=70)
+    played = play_episodes(make_worlds(experiment, 6), policy, range(70, 76))
     single = gym.make("ArkanoidLite-v0", **experiment.env)
     for index in range(6):
         observation, _ = single.reset(seed=70 + index)
@@ -58,7 +59,7 @@ def test_a_level_is_played_until_it_is_cleared_whatever_other_worlds_play() -> N
     experiment = load_experiment("quick")
     starts = find_starts(experiment, ["comb", "seeds:3-3", "islands"])
     policy = follower(experiment)
-    together = play_episodes(make_worlds(experiment, 9), policy, 40, starts, whole_games=False)
+    together = play_episodes(make_worlds(experiment, 9), policy, range(40, 43), starts, False)
     assert together["cleared"].shape == (3, 3)
     single = gym.make("ArkanoidLite-v0", **experiment.env)
     for level, start in enumerate(starts):
@@ -76,22 +77,34 @@ def test_a_level_is_played_until_it_is_cleared_whatever_other_worlds_play() -> N
             assert together["cleared"][episode, level] == (info["rounds_cleared"] > 0)
 
 
+def test_equal_seeds_of_two_purposes_have_no_episode_in_common() -> None:
+    """More episodes begin with the same ones. Validation and evaluation took seeds from N on."""
+    found = {purpose: spread_seeds(7, purpose, 500) for purpose in Purpose}
+    assert len(set().union(*found.values())) == 500 * len(Purpose)
+    for purpose, seeds in found.items():
+        assert spread_seeds(7, purpose, 3) == seeds[:3]
+        assert spread_seed(7, purpose, 2) == seeds[2]
+        assert spread_seed(7, purpose, 2, bits=32) == seeds[2] // 2**32
+
+
 def test_an_earlier_evaluation_in_the_same_worlds_leaves_nothing_behind() -> None:
     experiment = load_experiment("quick")
     worlds = make_worlds(experiment, 4)
     policy = NoOp(SPACE)
-    first = play_episodes(worlds, policy, seed=1)
-    play_episodes(worlds, policy, 1, find_starts(experiment, ["seeds:3-4"]), whole_games=False)
-    again = play_episodes(worlds, policy, seed=1)
+    first = play_episodes(worlds, policy, range(4))
+    play_episodes(
+        worlds, policy, range(2), find_starts(experiment, ["seeds:3-4"]), whole_games=False
+    )
+    again = play_episodes(worlds, policy, range(4))
     for name, values in first.items():
         np.testing.assert_array_equal(values, again[name])
 
 
 def test_each_level_needs_the_same_number_of_worlds() -> None:
     experiment = load_experiment("quick")
-    with pytest.raises(ValueError, match="3 worlds are not the same number for each of 2 levels"):
+    with pytest.raises(ValueError, match="3 worlds for 2 levels times 1 episodes"):
         play_episodes(
-            make_worlds(experiment, 3), NoOp(SPACE), 0, [EpisodeStart("a"), EpisodeStart("b")]
+            make_worlds(experiment, 3), NoOp(SPACE), [0], [EpisodeStart("a"), EpisodeStart("b")]
         )
 
 

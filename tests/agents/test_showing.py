@@ -15,6 +15,7 @@ from arkanoid.agents.commands.evaluate import group_by_experiment
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.provenance import weights_hash
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
+from arkanoid.agents.experiment.seeds import Purpose, spread_seeds
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn.curves import STEP
@@ -52,7 +53,7 @@ def test_a_game_shown_tick_by_tick_is_the_game_that_is_evaluated() -> None:
     experiment = load_experiment("quick", [("env.max_decisions", "300"), ("evaluation.seed", "77")])
     worlds = make_worlds(experiment, 1)
     policy = make_baseline("ball-follower", worlds, 0)
-    played = play_episodes(worlds, policy, 77)
+    played = play_episodes(worlds, policy, spread_seeds(77, Purpose.EVALUATION, 1))
     frames = {
         smooth: list(play_frames(experiment, policy, smooth=smooth)) for smooth in (False, True)
     }
@@ -137,8 +138,8 @@ def test_watch_shows_games_until_the_window_is_closed(
     monkeypatch.setattr(window, "Window", Show)
     assert cli.main(["watch", runs[0]]) == 0
     out = capsys.readouterr().out
-    assert re.search(r"^seed 1000000: score \d+, round 1$", out, re.MULTILINE)
-    assert "seed 1000001" in out
+    assert re.search(r"^game 1: score \d+, round 1$", out, re.MULTILINE)
+    assert "game 2" in out
     assert shown[0].dtype == np.uint8
 
 

@@ -18,13 +18,15 @@ from arkanoid.agents import cli
 from arkanoid.agents.adapter import GymnasiumVecEnv
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.seeds import Purpose, spread_seeds
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
-from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.experiment.worlds import make_worlds, native
 from arkanoid.agents.learn import model as learning
 from arkanoid.agents.learn import training
 from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.measure.comparison import COLUMNS
 from arkanoid.agents.measure.episodes import adapt
+from arkanoid.envs.game.random import seed_state
 from helpers.processes import run_arkanoid, run_program, start_arkanoid
 from numpy.typing import NDArray
 from PIL import Image
@@ -76,6 +78,7 @@ def test_a_run_keeps_all_that_is_needed_to_judge_and_to_repeat_it(trained: RunFo
     assert {"arkanoid", "python", "numpy", "torch", "stable_baselines3"} <= set(about["versions"])
     assert about["hardware"]["cores"] >= 1
     assert (about["seed"], about["outcome"]) == (0, "finished")
+    assert "warnings" not in about
     (session,) = about["sessions"]
     assert (session["from"], session["to"]) == (0, last["timesteps"])
     assert about["git"] is None or len(about["git"]["commit"]) == 40
@@ -143,6 +146,43 @@ def test_the_same_seed_gives_the_same_weights_and_another_seed_others() -> None:
     for ours, theirs in zip(first, again, strict=True):
         np.testing.assert_array_equal(ours, theirs)
     assert any((ours != theirs).any() for ours, theirs in zip(first, other, strict=True))
+
+
+def test_neighbouring_seeds_share_no_world(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """World i of seed s had the seed s + i: seeds 0 and 1 shared 63 of 64 worlds' generators.
+
+    The worlds began with the same levels, capsules and serves, so intervals over seeds, which take
+    runs to be independent, were too narrow.
+    """
+    begun: list[int] = []
+
+    def watched(worlds: Any) -> GymnasiumVecEnv:
+        venv = adapt(worlds)
+        reset = venv.reset
+
+        def look() -> Any:
+            observations = reset()
+            begun.extend(native(worlds).state["first_random"].tolist())
+            return observations
+
+        monkeypatch.setattr(venv, "reset", look)
+        return venv
+
+    monkeypatch.setattr(training, "adapt", watched)
+    for seed in ("0", "1"):
+        small = [("seed", seed), ("training.worlds", "64"), ("ppo.n_steps", "8")]
+        small += [("training.timesteps", "512"), ("ppo.batch_size", "512")]
+        experiment = load_experiment("quick", [*small, ("output", str(tmp_path))])
+        training.train(experiment, RunFolder.create(experiment))
+    assert len(begun) == len(set(begun)) == 128
+    # And no two of a thousand seeds.
+    states = {
+        seed_state(each)
+        for seed in range(1000)
+        for each in spread_seeds(seed, Purpose.TRAINING, 64)
+    }
+    assert len(states) == 64_000
+    assert states >= set(begun)
 
 
 def test_an_environment_that_refuses_its_arguments_is_a_settings_error() -> None:

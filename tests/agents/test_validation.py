@@ -1,5 +1,6 @@
 """During a training: validation, the curriculum, and the networks' features."""
 
+from collections import deque
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ from arkanoid.agents.experiment.provenance import weights_hash
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Curriculum, Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds, native
+from arkanoid.agents.learn import training
+from arkanoid.agents.learn.collapse import PATIENCE, CollapseWatch
 from arkanoid.agents.learn.curves import STEP, read_curve
 from arkanoid.agents.learn.model import load_policy, make_model
 from arkanoid.agents.learn.networks import LatticeExtractor, PlanesExtractor
@@ -20,6 +23,7 @@ from arkanoid.agents.learn.training import train
 from arkanoid.agents.measure.episodes import adapt
 from gymnasium import spaces
 from stable_baselines3 import PPO
+from stable_baselines3.common.logger import Logger
 
 SMALL = [("training.timesteps", "6144"), ("training.worlds", "16"), ("ppo.n_steps", "64")]
 SMALL += [("ppo.batch_size", "256"), ("ppo.n_epochs", "1"), ("env.max_decisions", "150")]
@@ -92,6 +96,73 @@ def test_a_cleared_rate_ends_the_training(tmp_path: Path) -> None:
     outcome, run = trained(small(tmp_path, *options))
     assert outcome.startswith("cleared rate ")
     assert run.read_notes()["weights"] is not None
+
+
+def warnings_of(run: RunFolder) -> list[str]:
+    found: list[str] = run.read_notes().get("warnings", [])
+    return found
+
+
+LONG = [("training.timesteps", "40960"), ("validation.every", "10240")]
+LONG += [("validation.episodes", "2")]
+LONG += [("validation.levels", '["ripple", "vault"]')]
+
+
+def test_a_healthy_training_gets_no_warning(tmp_path: Path) -> None:
+    """From the first decision on, when it is as poor as random play."""
+    _, run = trained(small(tmp_path, *LONG))
+    assert warnings_of(run) == []
+
+
+def test_a_collapsed_policy_is_noticed_once_and_stays_noted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It always went left. Nothing said so until the evaluation."""
+    monkeypatch.setattr(training, "make_model", collapsed_model((0.0, 30.0, 0.0)))
+    _, run = trained(small(tmp_path, *LONG, ("ppo.learning_rate", "1e-9")))
+    everywhere, on_levels = sorted(warnings_of(run), key=len)
+    assert "100.0 % of its actions are the same" in everywhere
+    assert "'ppo.ent_coef'" in everywhere
+    assert "collapsed on ripple, vault" in on_levels
+    told = capsys.readouterr().err
+    for warning in (everywhere, on_levels):
+        assert told.count(f"arkanoid: warning: {warning}") == 1
+
+
+def test_a_policy_is_certain_or_poor_or_both(tmp_path: Path) -> None:
+    """Only both are a collapse: a good policy may be certain, a new one poor."""
+    experiment = small(tmp_path)
+    venv = adapt(make_worlds(experiment, 16))
+    model = make_model(experiment, venv)
+    model.set_logger(Logger(None, []))
+    for entropy, gain, is_collapse in [(0.01, -9.0, True), (0.01, 9.0, False), (1.0, -9.0, False)]:
+        told: list[str] = []
+        watch = CollapseWatch(experiment, {}, told.append)
+        watch.init_callback(model)
+        model.ep_info_buffer = deque([{"r": gain}])
+        for rollout in range(4):
+            model.logger.record("train/entropy_loss", -entropy)
+            watch.on_rollout_start()
+            for _ in range(PATIENCE // 48 + 1):
+                watch.update_locals({"actions": np.arange(16) % 3})
+                watch.on_step()
+            watch.on_rollout_end()
+            assert len(told) == (is_collapse and rollout >= 2)
+        assert all("certain of its actions" in message for message in told)
+
+
+def collapsed_model(logits: tuple[float, ...]) -> Any:
+    """Return a `make_model` whose policy always has these logits."""
+
+    def make(*arguments: Any) -> PPO:
+        model = make_model(*arguments)
+        head: Any = model.policy.action_net
+        with torch.no_grad():
+            head.weight.zero_()
+            head.bias.copy_(torch.tensor(logits))
+        return model
+
+    return make
 
 
 def test_stages_begin_at_their_parts_of_the_training() -> None:

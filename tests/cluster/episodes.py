@@ -155,7 +155,7 @@ def check_evaluation(module: RLModule) -> str:
     worlds = gym.make_vec(
         "arkanoid:ArkanoidLite-v0", num_envs=count, autoreset_mode="SameStep", **keywords
     )
-    ours = play_episodes(worlds, likeliest(module, count), SEED)
+    ours = play_episodes(worlds, likeliest(module, count), range(SEED, SEED + count))
     worlds.close()
     theirs = _first_episodes(module, count, keywords)
     for name in ("return", "steps"):

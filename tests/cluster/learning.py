@@ -36,7 +36,7 @@ def check_learning(module: RLModule) -> str:
             if name == "agent"
             else RandomPolicy(worlds.single_action_space, GAMES, SEED)
         )
-        played = play_episodes(worlds, policy, SEED)
+        played = play_episodes(worlds, policy, range(SEED, SEED + GAMES))
         worlds.close()
         measured[name] = {
             key: bootstrap_interval(played[key].ravel()) for key in ("hits", "score", "return")

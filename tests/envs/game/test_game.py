@@ -277,11 +277,7 @@ def test_doing_nothing_ends_the_episode():
     assert step < 10_000
 
 
-def test_an_idle_game_is_truncated_and_says_why():
-    env, world = make()
-    world.idle = 3599
-    *_, terminated, truncated, info = env.step(NOOP)
-    assert (terminated, truncated, info["truncation"]) == (False, True, 2)
+def test_the_limit_of_decisions_truncates_and_says_why():
     env, _ = make(max_decisions=1)
     *_, terminated, truncated, info = env.step(NOOP)
     assert (terminated, truncated, info["truncation"]) == (False, True, 1)

@@ -151,7 +151,7 @@ def test_a_new_round_shows_its_name() -> None:
     assert shown == TITLE_TICKS
 
 
-def test_a_player_is_warned_before_the_game_is_cut() -> None:
+def test_a_player_is_warned_before_idling_costs_a_life() -> None:
     sitting = sit_down("warden")
     tap(sitting, Key.FIRE)
     sitting.world.idle = IDLE_TICKS - WARNING_TICKS - 1
@@ -162,8 +162,8 @@ def test_a_player_is_warned_before_the_game_is_cut() -> None:
     sitting.tick()
     assert sitting.text()[1] == ("HIT A BRICK WITHIN 1 S",)
     sitting.tick()
-    assert sitting.phase is Phase.OVER
-    assert sitting.text()[0] == "60 SECONDS WITHOUT A HIT"
+    assert (sitting.world.lives, sitting.world.idle) == (2, 0)
+    assert (sitting.phase, sitting.text()) == (Phase.PLAYING, ("", ()))
 
 
 @pytest.mark.parametrize(
