@@ -15,8 +15,10 @@ import gymnasium as gym
 from arkanoid.envs import rules
 from arkanoid.envs.config import ACTIONS, OBSERVATIONS, REWARD_MEANINGS, Config
 from arkanoid.envs.draw.status import STATUS_PARTS
+from arkanoid.envs.game.flight import LANDING_IMPACTS
 from arkanoid.envs.levels.starts import START_OPTIONS
 from arkanoid.envs.observe import planes, vector
+from arkanoid.envs.observe.landing import LANDING_PARTS
 from arkanoid.envs.observe.layout import Part, slices
 from arkanoid.envs.registration import GAMES
 from arkanoid.envs.state import DECISION_LIMIT, INFO_MEANINGS
@@ -127,8 +129,8 @@ def part_table(parts: tuple[Part, ...]) -> str:
     return table(("part", "slice", "meaning"), rows)
 
 
-def pay_parts(parts: tuple[Part, ...]) -> str:
-    """Return the parts that only games with the score as reward have."""
+def further_parts(parts: tuple[Part, ...]) -> str:
+    """Return the parts that only some games have."""
     return "; ".join(f"`{part.name}` ({part.length}), {part.meaning}" for part in parts)
 
 
@@ -224,7 +226,13 @@ the ceiling. Numbers of things that are not there are 0.
 
 {part_table(vector.CORE_PARTS + vector.EXTRA_PARTS)}
 
-With `reward="score"`, two parts follow, which say what pays: {pay_parts(vector.PAY_PARTS)}.
+With `reward="score"`, two parts follow, which say what pays: {further_parts(vector.PAY_PARTS)}.
+
+With `landing=True`, three parts are the last: {further_parts(LANDING_PARTS)}.
+Each ball flies alone, exactly as in the game, among walls, bricks and the boss as they stand. It
+breaks bricks on its way; there are no enemies. A held ball is there already. A landing is unknown
+if the ball would clear the round before, has more than {LANDING_IMPACTS} impacts, or falls below
+the paddle's upper side already.
 
 ### `grid`
 
@@ -237,8 +245,8 @@ shared in the same way. Where things share a cell, their numbers are added and c
 
 The rows of `status`, from the top: {", ".join(f"`{name}`" for name in planes.STATUS)}.
 
-With `reward="score"`, a plane follows: {pay_parts(planes.PAY_PARTS)}. The row `next_life` has the
-points to the next life / {rules.EXTRA_LIFE_EVERY}; with other rewards it is 0.
+With `reward="score"`, a plane follows: {further_parts(planes.PAY_PARTS)}. The row `next_life` has
+the points to the next life / {rules.EXTRA_LIFE_EVERY}; with other rewards it is 0.
 
 ### `rgb`
 

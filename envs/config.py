@@ -44,7 +44,7 @@ DEFLECTION_MEANINGS = {
 }
 # The keywords that say only how a game is seen, or cut into episodes. All others decide its course.
 _PICTURES = ("size", "grey", "stack", "channels")
-SEEN = ("observation", *_PICTURES, "episodic_life")
+SEEN = ("observation", "landing", *_PICTURES, "episodic_life")
 MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
 
@@ -67,6 +67,11 @@ class Config:
         1, "with pictures: how many of the latest ones an observation shows, the newest last"
     )
     channels: str = _keyword("first", "with pictures: which axis has the channels", CHANNELS)
+    landing: bool = _keyword(
+        False,
+        "with vectors and dict: whether they say where and when each ball will come down to the "
+        "paddle, among walls, bricks and the boss as they stand",
+    )
     actions: str = _keyword("discrete6", "the action space", ACTIONS)
     reward: str = _keyword("progress", "what a decision pays", REWARD_MEANINGS)
     frame_skip: int = _keyword(4, "ticks per decision; the reward is their sum")
@@ -102,6 +107,12 @@ class Config:
     def __post_init__(self) -> None:
         check_choice("observation", self.observation, tuple(OBSERVATIONS))
         self._check_pictures()
+        check_boolean("landing", self.landing)
+        if self.landing and self.observation not in ("vector", "dict"):
+            raise ValueError(
+                f"landing={self.landing!r} adds numbers to vectors, and observation="
+                f"{self.observation!r} has none: leave it out, or use observation='vector'"
+            )
         check_choice("actions", self.actions, tuple(ACTIONS))
         check_choice("reward", self.reward, tuple(REWARDS))
         check_choice("deflection", self.deflection, tuple(DEFLECTIONS))

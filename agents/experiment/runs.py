@@ -245,6 +245,7 @@ class ModelFile:
             "file": self.path.name,
             "sha256": digest.hexdigest(),
             "seed": self.run.experiment().seed,
+            "inputs": self.run.experiment().inputs,
         }
 
 

@@ -45,7 +45,7 @@ Fraction = Annotated[Number, Field(ge=0, le=1)]
 PositiveFraction = Annotated[Number, Field(gt=0, le=1)]
 
 SuiteName = Literal["games", "training", "test", "named"]
-BaselineName = Literal["no-op", "random", "ball-follower", "planner"]
+BaselineName = Literal["no-op", "random", "ball-follower", "landing-follower", "planner"]
 BestMeasure = Literal["return", "cleared", "score", "round"]
 BASELINES: tuple[BaselineName, ...] = get_args(BaselineName)
 BEST: tuple[BestMeasure, ...] = get_args(BestMeasure)
@@ -98,9 +98,10 @@ class Ppo:
 class Network:
     """Which features are made of an observation, and the layers above them."""
 
-    features: Literal["auto", "flat", "lattice", "planes", "nature"] = Field(
+    features: Literal["auto", "flat", "landing", "lattice", "planes", "nature"] = Field(
         default="auto",
-        description="flat: all numbers side by side; lattice: the bricks of `vector` through "
+        description="flat: all numbers side by side; landing: these, and where and when the balls "
+        "of `vector` come down among the walls alone; lattice: the bricks of `vector` through "
         "convolutions; planes: `grid` or `rgb` through convolutions; nature: `rgb` through those "
         "of Mnih et al. (2015), large and slow; auto: what suits the observation",
     )
@@ -254,6 +255,16 @@ class Experiment:
         """The configuration for measuring and showing: whole games, whatever ends an episode."""
         return replace(self.config, episodic_life=False)
 
+    @property
+    def inputs(self) -> str:
+        """What an agent sees, in words: the observation, and what is said about landings."""
+        inputs = self.config.observation
+        if self.config.landing:
+            inputs += ", with the landings of the balls among walls, bricks and the boss"
+        if self.network.features == "landing":
+            inputs += ", with the landings of the balls among the walls alone"
+        return inputs
+
     def __post_init__(self) -> None:
         forbidden = not set(self.name).isdisjoint('/\\:*?"<>|')
         if not self.name or forbidden or not self.name.isprintable():
@@ -277,7 +288,12 @@ class Experiment:
                 "'env.observation' = 'dict' and 'env.channels' = 'last' are for other trainers: "
                 "the networks here take one array, with the channels first"
             )
-        suited = {"lattice": ("vector",), "planes": ("grid", "rgb"), "nature": ("rgb",)}
+        suited = {
+            "landing": ("vector",),
+            "lattice": ("vector",),
+            "planes": ("grid", "rgb"),
+            "nature": ("rgb",),
+        }
         wanted = suited.get(self.network.features)
         if wanted is not None and observation not in wanted:
             raise SettingsError(

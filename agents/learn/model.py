@@ -204,7 +204,7 @@ def _policy_arguments(experiment: Experiment, layout: Mapping[str, slice]) -> di
     return {
         "net_arch": list(network.hidden),
         "activation_fn": ACTIVATIONS[network.activation],
-        **extractor_arguments(network, experiment.config.observation, layout),
+        **extractor_arguments(network, experiment.config, layout),
     }
 
 

@@ -12,8 +12,11 @@ from stable_baselines3.common.torch_layers import (
 )
 from torch import nn
 
+from ...envs.config import Config
 from ...envs.rules import COLUMNS, ROWS
 from ..experiment.settings import Network
+from ..measure.landing import PARTS, fastest_ball
+from .landing import LandingExtractor
 
 ACTIVATIONS: dict[str, type[nn.Module]] = {
     "tanh": nn.Tanh,
@@ -97,23 +100,29 @@ def convolutions(
 
 
 def extractor_arguments(
-    network: Network, observation: str, layout: Mapping[str, slice]
+    network: Network, config: Config, layout: Mapping[str, slice]
 ) -> dict[str, Any]:
     """Return the part of stable-baselines3's ``policy_kwargs`` that makes the features.
 
     Args:
         network: the settings.
-        observation: its kind: ``"vector"``, ``"grid"`` or ``"rgb"``.
-        layout: its named slices.
+        config: the environment's; its observation is ``"vector"``, ``"grid"`` or ``"rgb"``.
+        layout: the observation's named slices.
     """
     chosen: str = network.features
     if chosen == "auto":
-        chosen = {"vector": "lattice", "grid": "planes", "rgb": "nature"}[observation]
+        chosen = {"vector": "lattice", "grid": "planes", "rgb": "nature"}[config.observation]
     common = {
         "channels": tuple(network.channels),
         "embedding": network.embedding,
         "activation": network.activation,
     }
+    if chosen == "landing":
+        where = {name: (layout[name].start, layout[name].stop) for name in PARTS}
+        return {
+            "features_extractor_class": LandingExtractor,
+            "features_extractor_kwargs": {"layout": where, "speed": fastest_ball(config.speed)},
+        }
     if chosen == "lattice":
         bricks = layout["bricks"]
         return {

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...envs.rules import FIELD_WIDTH
 from ..experiment.worlds import native
+from .landing import next_ball
 from .planner import Planner
 from .policy import Policy, encode_actions, paddle_reach
 
@@ -64,6 +65,27 @@ class BallFollower:
         return encode_actions(self._space, gap / self._reach)
 
 
+class LandingFollower:
+    """Keeps the paddle's middle where the next ball comes down; fires if it can.
+
+    It foresees the walls but nothing else. While no ball falls, it follows the first one.
+
+    ``layout`` names the slices of an observation, and ``reach`` is how far the paddle can move in a
+    decision, in brick widths.
+    """
+
+    def __init__(self, space: Any, layout: Mapping[str, slice], reach: float) -> None:
+        self._space = space
+        self._layout = layout
+        self._reach = reach
+
+    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+        """Return actions for observations [n, size]."""
+        target, _ = next_ball(observations, self._layout)
+        middle = (observations[:, self._layout["paddle"].start] + 1.0) * (FIELD_WIDTH / 2)
+        return encode_actions(self._space, (target - middle) / self._reach, fire=True)
+
+
 def make_baseline(name: str, worlds: VectorEnv[Any, Any, Any], seed: int) -> Policy:
     """Return a baseline by its name, to play in ``worlds``, whose observation is ``vector``."""
     space = worlds.single_action_space
@@ -74,4 +96,6 @@ def make_baseline(name: str, worlds: VectorEnv[Any, Any, Any], seed: int) -> Pol
         return RandomPolicy(space, worlds.num_envs, seed)
     if name == "ball-follower":
         return BallFollower(space, layout, paddle_reach(worlds) * 2 / FIELD_WIDTH)
+    if name == "landing-follower":
+        return LandingFollower(space, layout, paddle_reach(worlds))
     return Planner(worlds)

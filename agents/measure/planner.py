@@ -11,8 +11,9 @@ from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
 from ...envs import ArkanoidVectorEnv
-from ...envs.rules import BALL_RADIUS, FIELD_HEIGHT, FIELD_WIDTH, PADDLE_TOP
+from ...envs.rules import FIELD_HEIGHT, FIELD_WIDTH, PADDLE_TOP
 from ..experiment.worlds import native
+from .landing import next_ball
 from .policy import encode_actions, paddle_reach
 
 # Where on the paddle the next ball may land, in half widths from its middle: one plan for each.
@@ -64,7 +65,8 @@ class Planner:
         landed = np.full(count, PLAYED)
         taken = []
         for decision in range(HORIZON):
-            falling = self._lowest_falling(observations)[1]
+            # Bricks and enemies in the way are ignored; playing the plan tells what they change.
+            falling = next_ball(observations, scouts.layout)[1]
             offsets = np.where(waiting, OFFSETS, 0.0)
             taken.append(self._act(observations, offsets))
             observations, rewards, terminated, truncated, infos = scouts.step(taken[-1])
@@ -73,7 +75,7 @@ class Planner:
             gain = (rewards - PRICE_OF_A_LIFE * lost) * DISCOUNT**decision
             values += np.where(playing, gain, 0.0)
             playing &= ~over
-            rises = falling & ~self._lowest_falling(observations)[1]
+            rises = falling & ~next_ball(observations, scouts.layout)[1]
             low = self._heights(observations).min(axis=1) < PADDLE_TOP + 2.0
             lands = waiting & rises & low
             landed[lands] = np.minimum(landed[lands], decision + 1)
@@ -84,34 +86,12 @@ class Planner:
 
     def _act(self, observations: NDArray[Any], offsets: NDArray[Any]) -> NDArray[Any]:
         """Return the actions that bring the paddle's places ``offsets`` to where balls land."""
-        target, _ = self._lowest_falling(observations)
+        target, _ = next_ball(observations, self._scouts.layout)
         paddle = observations[:, self._scouts.layout["paddle"]]
         middle = (paddle[:, 0] + 1.0) * (FIELD_WIDTH / 2)
         half = paddle[:, 1] * (FIELD_WIDTH / 2)
         moves = (target - offsets * half - middle) / self._reach
         return encode_actions(self._scouts.single_action_space, moves, fire=True)
-
-    def _lowest_falling(self, observations: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.bool_]]:
-        """Return where the next ball comes down to the paddle, and whether one is falling.
-
-        If all balls rise, it is the place of the first one. Bricks and enemies in the way are
-        ignored here; playing the plan tells what they change.
-        """
-        layout = self._scouts.layout
-        rows = np.arange(len(observations))
-        there = observations[:, layout["ball_in_play"]] > 0
-        x = (observations[:, layout["ball_x"]] + 1.0) * (FIELD_WIDTH / 2)
-        vx, vy = observations[:, layout["ball_vx"]], observations[:, layout["ball_vy"]]
-        height = self._heights(observations) - PADDLE_TOP - BALL_RADIUS
-        falls = there & (vy < 0) & (height > -PADDLE_TOP)
-        # In ticks times the speed of the fastest ball, because observed velocities are parts of it.
-        times = np.where(falls, height / np.where(falls, -vy, 1.0), np.inf)
-        next_ball = times.argmin(axis=1)
-        first = np.where(falls.any(axis=1), next_ball, there.argmax(axis=1))
-        time = np.where(np.isfinite(times[rows, first]), times[rows, first], 0.0)
-        landing = x[rows, first] + vx[rows, first] * time
-        any_falls: NDArray[np.bool_] = np.asarray(falls.any(axis=1))
-        return _between_walls(landing), any_falls
 
     def _heights(self, observations: NDArray[Any]) -> NDArray[Any]:
         """Return the balls' heights; a missing ball gets the field's height."""
@@ -119,10 +99,3 @@ class Planner:
         there = observations[:, layout["ball_in_play"]] > 0
         heights = (observations[:, layout["ball_y"]] + 1.0) * (FIELD_HEIGHT / 2)
         return np.where(there, heights, FIELD_HEIGHT)
-
-
-def _between_walls(x: NDArray[Any]) -> NDArray[Any]:
-    """Return the positions of balls that would be at x if the walls did not reflect them."""
-    width = FIELD_WIDTH - 2 * BALL_RADIUS
-    place = np.mod(x - BALL_RADIUS, 2 * width)
-    return BALL_RADIUS + np.minimum(place, 2 * width - place)

@@ -48,7 +48,7 @@ def describe_agent(
     facts = {
         "name": experiment.name,
         "env_id": experiment.env_id,
-        "observation": experiment.config.observation,
+        "inputs": experiment.inputs,
         "training_levels": experiment.config.plain()["levels"],
         "timesteps": experiment.training.timesteps,
         "models": [_model_row(model) for model in models],

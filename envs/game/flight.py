@@ -1,4 +1,4 @@
-"""A ball's flight through one tick: from impact to impact, each at its exact time."""
+"""A ball's flight from impact to impact, each at its exact time: in a tick, or to its landing."""
 
 import math
 
@@ -14,9 +14,10 @@ from ..rules import (
     FIELD_WIDTH,
     HITS_PER_TICK,
     MAX_BALLS,
+    PADDLE_TOP,
     PADDLE_Y,
 )
-from ..state import FLYING, RulesRecord, WorldRecord
+from ..state import FLYING, HELD, RulesRecord, WorldRecord, Worlds
 from .ball import bounce_ball, count_hit, deflect_ball
 from .boss import hit_boss, meet_boss
 from .bricks import hit_brick
@@ -27,6 +28,11 @@ from .shapes import BALL_SHAPE, BOSS, BRICK, CEILING, ENEMY, NOTHING, PADDLE, WA
 # A ball squeezed between paddle and wall moves up or down along the paddle's slanted end. Each
 # round halves the overlap, so that nothing is left of it in the end.
 FREEING_ROUNDS = 64
+
+# A ball whose middle is here touches the paddle's upper side.
+LANDING_HEIGHT = PADDLE_TOP + BALL_RADIUS
+# A ball that meets more than this is followed no further: behind a wall of bricks it may take long.
+LANDING_IMPACTS = 64
 
 
 @inlined
@@ -61,18 +67,14 @@ def _meet_paddle(
 
 
 @inner
-def _first_impact(
-    world: WorldRecord, rules: RulesRecord, ball: int, duration: float, paddle_counts: bool
+def _meet_resting(
+    world: WorldRecord, rules: RulesRecord, ball: int, duration: float
 ) -> tuple[float, float, float, int, int]:
-    """Return (time, normal_x, normal_y, what, index) of what a ball meets first.
+    """Return (time, normal_x, normal_y, what, index) of what a ball meets first of all that rests.
 
     The normal points from what is met to the ball. If nothing is met, the time is inf and what is
-    `NOTHING`. The index is the brick's cell, or the enemy.
-
-    Args:
-        duration: the rest of the tick; paddle_counts: whether the ball can meet the paddle.
+    `NOTHING`. The index is the brick's cell. The duration is in ticks, as many as you like.
     """
-    elapsed = 1.0 - duration
     x, y = world.ball_x[ball], world.ball_y[ball]
     vx, vy = world.ball_vx[ball], world.ball_vy[ball]
     time, normal_x, normal_y, what, index = math.inf, 0.0, 0.0, NOTHING, -1
@@ -92,7 +94,28 @@ def _first_impact(
     )
     if met < time:
         time, normal_x, normal_y, what, index = met, hit_x, hit_y, BRICK, hit_index
+    if world.boss_hits > 0:
+        met, hit_x, hit_y = meet_boss(rules, BALL_SHAPE, x, y, vx, vy, min(duration, time))
+        if met < time:
+            time, normal_x, normal_y, what = met, hit_x, hit_y, BOSS
+    return time, normal_x, normal_y, what, index
 
+
+@inlined
+def _first_impact(
+    world: WorldRecord, rules: RulesRecord, ball: int, duration: float, paddle_counts: bool
+) -> tuple[float, float, float, int, int]:
+    """Return (time, normal_x, normal_y, what, index) of what a ball meets first of everything.
+
+    As of `_meet_resting`; the index is the brick's cell, or the enemy.
+
+    Args:
+        duration: the rest of the tick; paddle_counts: whether the ball can meet the paddle.
+    """
+    elapsed = 1.0 - duration
+    x, y = world.ball_x[ball], world.ball_y[ball]
+    vx, vy = world.ball_vx[ball], world.ball_vy[ball]
+    time, normal_x, normal_y, what, index = _meet_resting(world, rules, ball, duration)
     if paddle_counts:
         paddle_x = world.paddle_x + world.paddle_vx * elapsed
         met, hit_x, hit_y = _meet_paddle(world, rules, ball, paddle_x, min(duration, time))
@@ -104,10 +127,6 @@ def _first_impact(
         )
         if met < time:
             time, normal_x, normal_y, what, index = met, hit_x, hit_y, ENEMY, hit_index
-    if world.boss_hits > 0:
-        met, hit_x, hit_y = meet_boss(rules, BALL_SHAPE, x, y, vx, vy, min(duration, time))
-        if met < time:
-            time, normal_x, normal_y, what = met, hit_x, hit_y, BOSS
     return time, normal_x, normal_y, what, index
 
 
@@ -193,3 +212,54 @@ def free_ball(world: WorldRecord, rules: RulesRecord, ball: int) -> None:
             world.ball_x[ball] = FIELD_WIDTH - BALL_RADIUS
         else:
             return
+
+
+@inner
+def find_landing(
+    world: WorldRecord, rules: RulesRecord, ball: int, scratch: Worlds
+) -> tuple[bool, float, float]:
+    """Return (found, x, ticks): where a ball comes down to the paddle's height, and when.
+
+    It flies as in the game, among walls, bricks and the boss as they stand, and breaks bricks on
+    its way. The paddle, enemies and other balls do nothing. A held ball is there already. Nothing
+    is found for a ball that is absent, falls below the paddle's upper side, clears the round, or
+    has more than `LANDING_IMPACTS` impacts.
+
+    Args:
+        scratch: `World` [1], to be overwritten.
+    """
+    if world.ball_state[ball] == HELD:
+        return True, world.ball_x[ball], 0.0
+    if world.ball_state[ball] != FLYING:
+        return False, 0.0, 0.0
+    scratch[0] = world
+    found, ticks = _fly_down(scratch[0], rules, ball)
+    return found, scratch[0].ball_x[ball], ticks
+
+
+@inner
+def _fly_down(world: WorldRecord, rules: RulesRecord, ball: int) -> tuple[bool, float]:
+    """Fly a ball down to the paddle's height; return whether it arrives, and its ticks."""
+    ticks = 0.0
+    for _ in range(LANDING_IMPACTS + 1):
+        vy = world.ball_vy[ball]
+        if vy < 0.0:
+            duration = (world.ball_y[ball] - LANDING_HEIGHT) / -vy
+        elif vy > 0.0:
+            duration = FIELD_HEIGHT / vy  # it meets the ceiling before
+        else:
+            return False, 0.0
+        if duration < 0.0:
+            return False, 0.0
+        time, normal_x, normal_y, what, index = _meet_resting(world, rules, ball, duration)
+        time = min(time, duration)
+        world.ball_x[ball] += world.ball_vx[ball] * time
+        world.ball_y[ball] += vy * time
+        ticks += time
+        if what == NOTHING:
+            return vy < 0.0, ticks
+        damaged = _strike(world, rules, what, index)
+        bounce_ball(world, rules, ball, normal_x, normal_y, damaged)
+        if world.cleared == 1:
+            return False, 0.0
+    return False, 0.0

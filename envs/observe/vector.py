@@ -45,13 +45,15 @@ from ..state import (
     HELD,
     RulesRecord,
     SharedRules,
+    World,
     WorldRecord,
     Worlds,
     zeros_in_lines,
 )
+from .landing import LANDING_LENGTH, LANDING_PARTS, observe_landings
 from .layout import Part, slices
 from .pay import brick_pay, has_pay, life_distance, shows_pay
-from .protocol import Observe
+from .protocol import Mask, Observe
 from .shown import (
     ALL_BRICKS,
     SHOWN_CAPSULES,
@@ -177,9 +179,15 @@ class VectorObserver:
         full = config.capsules or config.enemies
         length = FULL_LENGTH if full else CORE_LENGTH
         self.layout = _CORE | _EXTRAS if full else dict(_CORE)
+        self._without_pay = length
         if shows_pay(config):
             self.layout |= slices(PAY_PARTS, length)
             length += PAY_LENGTH
+        self._without_landings = length
+        if config.landing:
+            self.layout |= slices(LANDING_PARTS, length)
+            length += LANDING_LENGTH
+        self._shows_landings = config.landing
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, (length,), np.float32)
         self.observations: NDArray[np.float32] = zeros_in_lines((num_worlds, length), np.float32)
@@ -207,7 +215,19 @@ class VectorObserver:
     def part(self, worlds: Worlds, rules: SharedRules, share: slice) -> Observe:
         """Return what observes a share of the worlds."""
         rows, shown = self.observations[share], self._shown[share]
-        return partial(observe_vectors, worlds[share], rules, rows, shown)
+        seen = worlds[share], rules, rows
+        vectors = partial(observe_vectors, *seen, shown, self._without_pay)
+        if not self._shows_landings:
+            return vectors
+        # No two threads may share it.
+        scratch = zeros_in_lines((1,), World)
+        landings = partial(observe_landings, *seen, self._without_landings, scratch)
+
+        def observe(mask: Mask) -> None:
+            vectors(mask)
+            landings(mask)
+
+        return observe
 
 
 @kernel
@@ -223,35 +243,32 @@ def _up(y: float) -> float:
 
 
 @kernel
-def observe_vectors(worlds: Worlds, rules: SharedRules, rows: Any, shown: Any, mask: Any) -> None:
+def observe_vectors(
+    worlds: Worlds, rules: SharedRules, rows: Any, shown: Any, length: int, mask: Any
+) -> None:
     """Observe the worlds of a mask.
 
     Args:
-        rows: float32 [n, k]; shown: int64 [n, 3], what the rows show; mask: bool [n].
+        rows: float32 [n, k]; shown: int64 [n, 3], what the rows show; length: of the core parts, or
+            of core and extra parts; mask: bool [n].
     """
     for index in range(worlds.shape[0]):
         if index + _AHEAD < worlds.shape[0]:
-            _prefetch_row(worlds[index + _AHEAD], rules[0], rows, index + _AHEAD)
+            _prefetch_row(worlds[index + _AHEAD], rows, index + _AHEAD, length)
         if mask[index]:
-            _observe_vector(worlds[index], rules[0], rows[index], shown[index])
+            _observe_vector(worlds[index], rules[0], rows[index], shown[index], length)
 
 
 @inlined
-def _prefetch_row(world: WorldRecord, rules: RulesRecord, rows: Any, index: int) -> None:
+def _prefetch_row(world: WorldRecord, rows: Any, index: int, length: int) -> None:
     """Ask for those parts of a world's row that its observation will write."""
     prefetch(rows, index, _HEAD, _HEAD_SIZE)
-    if _length_without_pay(rules, rows.shape[1]) > CORE_LENGTH:
+    if length > CORE_LENGTH:
         prefetch(rows, index, _GATES, _GATES_SIZE)
         if _has_capsules(world):
             prefetch(rows, index, _CAPSULES, _CAPSULES_SIZE)
         if _has_enemies(world):
             prefetch(rows, index, _ENEMIES, _ENEMIES_SIZE)
-
-
-@inlined
-def _length_without_pay(rules: RulesRecord, length: int) -> int:
-    """Return how many numbers of a row come before those of `PAY_PARTS`."""
-    return length - PAY_LENGTH if has_pay(rules) else length
 
 
 @inlined
@@ -267,7 +284,9 @@ def _has_enemies(world: WorldRecord) -> bool:
 
 
 @inlined
-def _observe_vector(world: WorldRecord, rules: RulesRecord, row: Any, shown: ShownRow) -> None:
+def _observe_vector(
+    world: WorldRecord, rules: RulesRecord, row: Any, shown: ShownRow, length: int
+) -> None:
     """Write a world's observation into its row; the bricks only if they have changed."""
     row[_PADDLE] = _across(world.paddle_x)
     row[_PADDLE + 1] = world.paddle_half * (2.0 / FIELD_WIDTH)
@@ -287,7 +306,6 @@ def _observe_vector(world: WorldRecord, rules: RulesRecord, row: Any, shown: Sho
     row[_IDLE] = min(1.0, world.idle * (1.0 / IDLE_TICKS))
     row[_DECISIONS] = world.decisions / rules.max_decisions
     row[_LIVES] = 1.0 / max(1, world.lives)
-    length = _length_without_pay(rules, row.shape[0])
     _observe_bricks(world, rules, row, length + 1, shown)
     if has_pay(rules):
         row[length] = life_distance(world)

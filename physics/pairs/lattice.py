@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..kernels import kernel
+from ..kernels import inner, kernel
 from ..kernels.layouts import record_dtype
 from .disc_disc import sweep_point_disc
 from .results import NO_IMPACT
@@ -25,6 +25,11 @@ Lattice = record_dtype(
         ("rows", np.int64),
     ]
 )
+
+# A sweep over more rows than this goes through them one by one, and only as far as it has to.
+_FEW_ROWS = 3
+# The part of a cell by which such a sweep looks too far, so that no rounding error hides a cell.
+_MARGIN = 1 / 64
 
 # What kernels are passed (to a type checker, anything):
 LatticeRecord: TypeAlias = Any  # one `Lattice`
@@ -107,6 +112,10 @@ def sweep_disc_lattice(
     first_column, last_column, first_row, last_row = swept_cells(
         lattice, x, y, velocity_x, velocity_y, duration, -radius, -radius, radius, radius
     )
+    if last_row - first_row >= _FEW_ROWS:
+        return _sweep_rows(
+            lattice, solid, x, y, velocity_x, velocity_y, radius, duration, first_row, last_row
+        )
     time, normal_x, normal_y, cell = math.inf, 0.0, 0.0, -1
     for row in range(first_row, last_row + 1):
         for column in range(first_column, last_column + 1):
@@ -117,6 +126,55 @@ def sweep_disc_lattice(
                 )
                 if candidate < time:
                     time, normal_x, normal_y, cell = candidate, out_x, out_y, index
+    return time, normal_x, normal_y, cell
+
+
+@inner
+def _sweep_rows(
+    lattice: LatticeRecord,
+    solid: SolidCells,
+    x: float,
+    y: float,
+    velocity_x: float,
+    velocity_y: float,
+    radius: float,
+    duration: float,
+    first_row: int,
+    last_row: int,
+) -> tuple[float, float, float, int]:
+    """Return what `sweep_disc_lattice` returns, bit for bit, for a long way through some rows.
+
+    It goes through the rows in the order in which the disc reaches them, looks only at the columns
+    that the disc passes while it is in a row, and stops at the first impact.
+    """
+    width, height = lattice.cell_width, lattice.cell_height
+    reach_x, reach_y = radius + _MARGIN * width, radius + _MARGIN * height
+    time, normal_x, normal_y, cell = math.inf, 0.0, 0.0, -1
+    for number in range(last_row - first_row + 1):
+        row = first_row + number if velocity_y < 0.0 else last_row - number
+        # When the disc comes into the row, and when it has left it.
+        enters, leaves = 0.0, duration
+        above = y - (lattice.top - row * height + reach_y)  # the row, if positive
+        below = lattice.top - (row + 1) * height - reach_y - y
+        if velocity_y < 0.0:
+            enters, leaves = max(0.0, above / -velocity_y), min(duration, below / velocity_y)
+        elif velocity_y > 0.0:
+            enters, leaves = max(0.0, below / velocity_y), min(duration, above / -velocity_y)
+        if time < enters:
+            break
+        one, other = x + velocity_x * enters, x + velocity_x * leaves
+        first = lattice_index(min(one, other) - reach_x - lattice.left, width, lattice.columns)
+        last = lattice_index(max(one, other) + reach_x - lattice.left, width, lattice.columns)
+        for column in range(first, last + 1):
+            index = row * lattice.columns + column
+            if solid[index] == 0:
+                continue
+            candidate, out_x, out_y = _sweep_cell(
+                lattice, solid, column, row, x, y, velocity_x, velocity_y, radius, duration
+            )
+            # Of cells that are met at once the first one counts, whatever the order of the rows.
+            if candidate < time or (candidate == time and index < cell):
+                time, normal_x, normal_y, cell = candidate, out_x, out_y, index
     return time, normal_x, normal_y, cell
 
 

@@ -170,7 +170,13 @@ def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
     told: list[str] = []
     agent = follower(small)
     comparison = compare(small, {"agent": [agent, NoOp(SPACE)]}, told.append)
-    assert set(comparison["games"]) == {"agent", "no-op", "random", "ball-follower"}
+    assert set(comparison["games"]) == {
+        "agent",
+        "no-op",
+        "random",
+        "ball-follower",
+        "landing-follower",
+    }
     assert set(comparison["named"]) == {*comparison["games"], "planner"}
     assert comparison["named"]["agent"]["score"].shape == (2, 2, 13)
     assert comparison["named"]["planner"]["score"].shape == (1, 1, 13)

@@ -140,6 +140,7 @@ def test_a_config_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
         ("[validation]\nstop_at = 1.5", ["'validation.stop_at'", "at most 1"]),
         ('[evaluation]\nsuites = ["all"]', ["'evaluation.suites'", "'named'", "['all']"]),
         ('[network]\nfeatures = "planes"', ["'network.features'", "'grid'", "'vector'"]),
+        ('env = {observation = "grid"}\nnetwork = {features = "landing"}', ["'grid'", "'vector'"]),
         ('env = {observation = "rgb"}\nnetwork = {features = "lattice"}', ["'rgb'", "'vector'"]),
         ("[network]\nchannels = []", ["'network.channels'", "at least one"]),
         ('env = {observation = "dict"}', ["'env.observation' = 'dict'", "other trainers"]),

@@ -250,7 +250,7 @@ def facts_with(name: str) -> dict[str, Any]:
     return {
         "name": name,
         "env_id": name,
-        "observation": "vector",
+        "inputs": "vector",
         "training_levels": [name],
         "timesteps": 1,
         "models": [[name, 0, name, 1, "1 min", name, "abc"]],

@@ -54,7 +54,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
 
 def test_a_short_training_beats_the_baselines_clearly(trained: RunFolder) -> None:
     results = json.loads(trained.evaluation.read_text())["suites"]["games"]["policies"]
-    assert set(results) == {"agent", "no-op", "random", "ball-follower"}
+    assert set(results) == {"agent", "no-op", "random", "ball-follower", "landing-follower"}
     for measure in ("score", "hits"):
         means = {name: result["summary"][measure]["mean"] for name, result in results.items()}
         assert means["agent"]["low"] > 10 * means["random"]["high"]

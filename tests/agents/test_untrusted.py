@@ -196,6 +196,7 @@ def test_an_experiment_of_ones_own_may_name_a_module(
     [
         {"network.features": "flat"},
         {"network.features": "lattice"},
+        {"network.features": "landing", "env.landing": "true"},
         {"network.features": "flat", "network.hidden": "[]"},
         {"env.observation": "grid", "network.features": "auto", "network.activation": "relu"},
         {"env.observation": "rgb", "env.size": "48", "network.features": "planes"},

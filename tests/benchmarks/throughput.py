@@ -174,6 +174,8 @@ def numbers(peers: Peers) -> list[Row]:
         Row(f"{FULL}, grid", many(FULL, WORLDS, observation="grid"), "f"),
         Row(f"{LITE}, vector, {MOST} worlds", many(LITE, MOST), "n", "b", part=1 / SLOWER),
         Row(f"{FULL}, vector, {MOST} worlds", many(FULL, MOST), "o", "d", part=1 / SLOWER),
+        Row(f"{LITE}, vector, landing=True", many(LITE, WORLDS, landing=True), "p", "b"),
+        Row(f"{FULL}, vector, landing=True", many(FULL, WORLDS, landing=True), "q", "d"),
         Row("MinAtar's own class, one world", made(minatar, "own"), beside="b"),
     ]
 

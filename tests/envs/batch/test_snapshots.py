@@ -31,6 +31,7 @@ MODES = ["NextStep", "SameStep", "Disabled"]
 # Ways to see a game; a stack of pictures remembers earlier ones.
 SEEN = [
     {},
+    {"landing": True},
     {"observation": "grid"},
     {"observation": "rgb", "size": 24, "grey": True, "stack": 3},
     {"observation": "rgb", "size": (20, 16)},

@@ -10,6 +10,7 @@ from arkanoid.envs.state import INFO_FIELDS
 VIEWS = [
     {},
     {"observation": "grid"},
+    {"landing": True},
     {"observation": "rgb", "size": 30, "grey": True, "stack": 3},
     {"observation": "dict", "size": 24, "channels": "last"},
 ]
@@ -85,7 +86,7 @@ def agree(transitions, steps):
 
 
 @pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("recorded", VIEWS[:2])
+@pytest.mark.parametrize("recorded", VIEWS[:3])
 def test_transitions_are_what_the_environment_gave(view, recorded):
     """In any observation, whatever was observed when the game was recorded."""
     game = {"sticky_action": 0.25, "speed": 2.0}

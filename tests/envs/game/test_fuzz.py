@@ -138,6 +138,7 @@ def fuzz(seed, games, worlds, steps):
 
 VIEWS = [
     {"observation": "vector"},
+    {"observation": "vector", "landing": True},
     {"observation": "grid"},
     {"observation": "rgb", "size": 20, "grey": True, "stack": 2},
     {"observation": "dict", "size": (9, 31), "channels": "last"},
@@ -145,7 +146,7 @@ VIEWS = [
 
 
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("view", VIEWS, ids=[view["observation"] for view in VIEWS])
+@pytest.mark.parametrize("view", VIEWS, ids=["-".join(map(str, view.values())) for view in VIEWS])
 def test_every_observation_lies_in_its_space(view, seed):
     """In games of any kind, at every step.
 
@@ -203,7 +204,7 @@ def play_hash(steps):
     for level, keywords in [
         ("campaign", {"capsule_rate": 1.0}),
         ("seeds:0-50", {"capsule_rate": 0.5, "deflection": "zones6", "sticky_action": 0.1}),
-        ("warden", {"deflection": "physical"}),
+        ("warden", {"deflection": "physical", "landing": True}),
     ]:
         env = ArkanoidVectorEnv(3, lives=2, max_decisions=250, levels=level, speed=1.5, **keywords)
         digest.update(env.reset(seed=11)[0].tobytes())
@@ -227,7 +228,8 @@ def test_interpreted_and_compiled_give_the_same_bits():
 
 def test_the_same_bits_in_any_batch_and_from_any_snapshot():
     """Worlds 0 to 4 of 64 worlds, and of 5 that were restored from a snapshot on the way."""
-    keywords = {"capsule_rate": 1.0, "speed": 2.0, "max_decisions": 150, "threads": 1}
+    keywords = {"capsule_rate": 1.0, "speed": 2.0, "max_decisions": 150, "landing": True}
+    keywords["threads"] = 1
     many, few = ArkanoidVectorEnv(64, **keywords), ArkanoidVectorEnv(5, **keywords)
     many.reset(seed=0)
     few.reset(seed=0)

@@ -144,6 +144,8 @@ def test_stable_baselines3_learns_from_pictures_as_they_are():
     [
         ({"observation": "pixels"}, ValueError, "'vector', 'grid', 'rgb'"),
         ({"size": 64}, ValueError, "size=64 says how pictures look, and observation='vector'"),
+        ({"observation": "grid", "landing": True}, ValueError, "landing=True adds numbers to vec"),
+        ({"landing": 1}, TypeError, "landing"),
         ({"observation": "grid", "stack": 4}, ValueError, "stack=4 says how pictures look"),
         ({"grey": True}, ValueError, "use observation='rgb'"),
         ({"observation": "rgb", "size": 0}, ValueError, "size must be between 1 and 4096"),

@@ -11,6 +11,7 @@ LIVELY = {"capsule_rate": 1.0, "speed": 3.0, "lives": 2, "max_decisions": 400}
 KINDS = [
     {"observation": "vector"},
     {"observation": "vector", "capsules": False, "enemies": False},
+    {"observation": "vector", "landing": True},
     {"observation": "grid"},
     {"observation": "rgb", "size": 30},
     {"observation": "rgb", "size": 30, "grey": True},

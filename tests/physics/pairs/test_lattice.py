@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from arkanoid.physics.pairs.lattice import Lattice, sweep_disc_lattice
+from arkanoid.physics.pairs.lattice import Lattice, _sweep_cell, sweep_disc_lattice
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Point, box, union_all
@@ -61,6 +61,34 @@ def test_first_impact_against_the_distance_to_the_union(solid, x, y, vx, vy, rad
         nearest = Point(x + vx * time - radius * nx, y + vy * time - radius * ny)
         assert region.distance(nearest) < 1e-12
         assert vx * nx + vy * ny <= 0.0
+
+
+@pytest.mark.parametrize("filled", [0.02, 0.3, 0.9])
+def test_a_long_way_gives_the_bits_of_a_look_at_every_cell(filled):
+    """It visits few cells, in another order; of cells met at once, the first in the rows counts."""
+    columns, rows = 11, 18
+    generator = np.random.default_rng(0)
+    lattice = make_lattice(columns, rows, left=0.0, top=13.0)
+    met = 0
+    for number in range(1500):
+        solid = (generator.random(columns * rows) < filled).astype(np.uint8)
+        x, y = generator.uniform(-1.0, 12.0), generator.uniform(1.0, 15.0)
+        vx, vy = generator.uniform(-0.5, 0.5, 2)
+        if number % 3 == 0:
+            # Along an axis or a diagonal, through the lattice's corners.
+            x, y = round(x), round(2 * y) / 2
+            vx, vy = ((0.0, 0.25), (0.25, 0.0), (0.25, -0.125), (-0.25, 0.125))[number // 3 % 4]
+        radius = (0.125, 0.5)[number % 2]
+        way = (x, y, vx, vy, radius, 200.0)
+        expected = math.inf, 0.0, 0.0, -1
+        for cell in np.flatnonzero(solid).tolist():
+            row, column = divmod(cell, columns)
+            found = _sweep_cell(lattice, solid, column, row, *way)
+            if found[0] < expected[0]:
+                expected = (*found, cell)
+        assert sweep_disc_lattice(lattice, solid, *way) == expected
+        met += expected[0] < math.inf
+    assert met > 200
 
 
 @settings(max_examples=300, deadline=None)
