@@ -27,6 +27,7 @@ COMMANDS = {
     "levels": "list the named levels, or draw any level",
     "train": "train PPO on the game, then compare it with the baselines",
     "reproduce": "train a run again and compare its weights, bit for bit",
+    "dataset": "write recorded games as a Minari data set",
     "tune": "search for hyper-parameters",
     "evaluate": "measure trained models against the baselines",
     "watch": "watch an agent play in a window",
@@ -38,11 +39,16 @@ _WITHOUT_SETTINGS = {"play", "replay", "levels"}
 # Options of the other commands that are no settings: without and with a value.
 _FLAGS = {"--help", "--version", "--json", "--trust"}
 _OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
+_OPTIONS |= {"--config", "--decisions", "--games-seed", "--from", "--games", "--track"}
 _OPTIONS |= {"--trials"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
     "PIL": "train",
+    "h5py": "minari",
+    "minari": "minari",
+    "mlflow": "mlflow",
+    "wandb": "wandb",
     "filelock": "train",
     "imageio_ffmpeg": "train",
     "jinja2": "train",

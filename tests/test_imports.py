@@ -59,7 +59,7 @@ ORDER = {
 FILES = [file for package in ORDER for file in sorted((ROOT / package).rglob("*.py"))]
 HEAVY = {
     *("torch", "stable_baselines3", "tensorboard", "optuna", "pygame", "matplotlib", "PIL"),
-    *("pydantic", "jinja2", "markdown_it", "tomli_w"),
+    *("pydantic", "jinja2", "markdown_it", "tomli_w", "minari", "h5py", "mlflow", "wandb"),
 }
 MOST_LINES = 400  # of a file
 MOST_FILES = 16  # of code in a folder, not counting `__init__.py`

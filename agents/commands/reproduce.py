@@ -19,6 +19,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Train again beside the run; return 0 if the weights are the same, else 1."""
     if overrides:
         raise SettingsError("a run is reproduced with its own settings: give no others")
+    from ..experiment.lineage import begin_like, describe_lineage
     from ..experiment.runs import RunFolder
 
     folder = RunFolder.of(arguments.run, arguments.trust)
@@ -29,8 +30,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     experiment = folder.experiment([("name", f"{path.name}-again"), ("output", str(path.parent))])
     from ..learn.training import INTERRUPTED, train
 
+    lineage = describe_lineage(folder.read_notes().get("lineage"))
     again = RunFolder.create(experiment)
+    begin_like(again, folder)
     print(f"again: {again.path}")
+    if lineage is not None:
+        print(printable(lineage))
     if train(experiment, again) == INTERRUPTED:
         return 130
     notes = again.read_notes()

@@ -61,6 +61,16 @@ def _are_facts(value: Any) -> bool:
     return type(value) is dict and all(map(_is_text, value)) and all(map(_is_fact, value.values()))
 
 
+def _is_lineage(value: Any) -> bool:
+    """Tell whether a value says what a run began with, as `lineage` describes it."""
+    if value is None:
+        return True
+    if not _are_facts(value):
+        return False
+    texts, count = ("kind", "name", "weights"), value.get("decisions")
+    return all(_is_text(value.get(name)) for name in texts) and _is_count(count)
+
+
 # What is read, and whether a value can be that. A clock that was set back makes seconds negative.
 _NOTES: dict[str, Callable[[Any], bool]] = {
     "outcome": _is_optional_text,
@@ -72,6 +82,8 @@ _NOTES: dict[str, Callable[[Any], bool]] = {
     "versions": _are_facts,
     "git": _are_facts,
     "hardware": _are_facts,
+    "lineage": _is_lineage,
+    "trackers": _are_facts,
 }
 _SESSION: dict[str, Callable[[Any], bool]] = {
     "started": _is_text,

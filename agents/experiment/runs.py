@@ -179,6 +179,11 @@ class RunFolder:
         return self.path / "best.zip"
 
     @property
+    def start(self) -> Path:
+        """The model that the training began with; without one its weights were random."""
+        return self.path / "start.zip"
+
+    @property
     def checkpoint(self) -> Path:
         """All that a killed run needs to resume."""
         return self.path / "checkpoint.pt"

@@ -21,6 +21,7 @@ class Purpose(IntEnum):
     TRIAL = 5  # the experiments' seeds in a search
     SAMPLER = 6  # the draws of a search
     BLIND = 7  # what a collapsed policy is compared with
+    DATASET = 8  # games that are recorded to learn from
 
 
 def spread_seeds(seed: int, purpose: Purpose, count: int) -> list[int]:

@@ -127,6 +127,19 @@ class Network:
 
 
 @dataclass(frozen=True, config=_CHECKED)
+class Imitation:
+    """Behaviour cloning before PPO begins: policy and value function learn from recorded games."""
+
+    dataset: str = Field(
+        default="",
+        description="Minari data set that is imitated: its id, or its folder; empty: none",
+    )
+    epochs: Count = Field(default=10, description="passes over the data set")
+    batch_size: Count = Field(default=512, description="decisions in one gradient step")
+    learning_rate: Positive = Field(default=1e-3, description="Adam's step size")
+
+
+@dataclass(frozen=True, config=_CHECKED)
 class Curriculum:
     """How episodes begin in each stage of a training; a stage begins with new episodes."""
 
@@ -231,6 +244,7 @@ class Experiment:
     training: Training = field(default_factory=Training)
     ppo: Ppo = field(default_factory=Ppo)
     network: Network = field(default_factory=Network)
+    imitation: Imitation = field(default_factory=Imitation)
     curriculum: Curriculum = field(default_factory=Curriculum)
     validation: Validation = field(default_factory=Validation)
     evaluation: Evaluation = field(default_factory=Evaluation)

@@ -35,8 +35,7 @@ class CurveWriter:
         self, key_values: dict[str, Any], key_excluded: dict[str, Any], step: int = 0
     ) -> None:
         """Append the numbers among the values, with their step."""
-        numbers = {key: float(value) for key, value in key_values.items() if _has_number(value)}
-        self._file.write(_line({STEP: int(step), **dict(sorted(numbers.items()))}))
+        self._file.write(_line({STEP: int(step), **numbers_of(key_values)}))
         self._file.flush()
 
     def close(self) -> None:
@@ -91,6 +90,11 @@ def is_number(value: Any) -> bool:
 
 def _line(row: dict[str, Any]) -> str:
     return json.dumps(row) + "\n"
+
+
+def numbers_of(values: dict[str, Any]) -> dict[str, float]:
+    """Return the numbers among logged values, in the order of their names."""
+    return {key: float(value) for key, value in sorted(values.items()) if _has_number(value)}
 
 
 def _has_number(value: Any) -> bool:

@@ -93,6 +93,21 @@ def load_policy(model: ModelFile, experiment: Experiment) -> Policy:
     return ModelPolicy(network, settings.deterministic, seed)
 
 
+def read_weights(path: Path, experiment: Experiment) -> dict[str, torch.Tensor]:
+    """Return a saved model's weights, which fit the experiment's network; no code is run.
+
+    `policy.load_state_dict` puts them into any model of the experiment. Raises `SettingsError` if
+    the file cannot be read or holds another network.
+    """
+    try:
+        return _read_weights(path, _unfilled(experiment).state_dict())
+    except Exception as error:  # a damaged file can raise anything
+        raise SettingsError(
+            f"{path}: not a model of the experiment's network ({error}): a training can only begin "
+            f"with the weights of a model that has the same network, observation and actions"
+        ) from None
+
+
 class ModelPolicy:
     """A model as a policy.
 
@@ -142,21 +157,7 @@ class _UnfilledPolicy(ActorCriticPolicy):
 def _rebuilt(model: ModelFile, experiment: Experiment) -> BasePolicy:
     """Return the run's network with the weights of the file."""
     # An evaluation can change the game, but not the network.
-    experiment = replace(experiment, network=model.run.experiment().network)
-    worlds = make_worlds(experiment, 1)
-    try:
-        observations, actions = worlds.single_observation_space, worlds.single_action_space
-        layout = native(worlds).layout
-    finally:
-        worlds.close()
-    with torch.device("meta"):
-        policy = _UnfilledPolicy(
-            observations,
-            actions,
-            lambda _: 1.0,
-            ortho_init=False,
-            **_policy_arguments(experiment, layout),
-        )
+    policy = _unfilled(replace(experiment, network=model.run.experiment().network))
     try:
         weights = _read_weights(model.path, policy.state_dict())
     except Exception as error:  # a damaged file can raise anything
@@ -168,6 +169,24 @@ def _rebuilt(model: ModelFile, experiment: Experiment) -> BasePolicy:
     policy.load_state_dict(weights, assign=True)
     policy.set_training_mode(False)
     return policy
+
+
+def _unfilled(experiment: Experiment) -> _UnfilledPolicy:
+    """Return the experiment's network without weights."""
+    worlds = make_worlds(experiment, 1)
+    try:
+        observations, actions = worlds.single_observation_space, worlds.single_action_space
+        layout = native(worlds).layout
+    finally:
+        worlds.close()
+    with torch.device("meta"):
+        return _UnfilledPolicy(
+            observations,
+            actions,
+            lambda _: 1.0,
+            ortho_init=False,
+            **_policy_arguments(experiment, layout),
+        )
 
 
 def _read_weights(path: Path, expected: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:

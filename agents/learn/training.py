@@ -27,10 +27,14 @@ from ..measure.episodes import adapt
 from .callbacks import GameStatistics, ProgressBar, StopRequest
 from .checkpoints import Checkpoints, resume
 from .collapse import CollapseWatch, Warn
-from .curves import CurveWriter
+from .curves import CurveWriter, numbers_of
 from .model import make_model, save_model
 from .periodic_validation import Judge, PeriodicValidation
 from .stages import Stages, stage_options
+from .starting import begin
+
+# Takes the number of decisions, and numbers by their names.
+Log = Callable[[int, dict[str, float]], None]
 
 INTERRUPTED = "interrupted"
 FINISHED = "finished"
@@ -41,6 +45,7 @@ def train(
     folder: RunFolder,
     resumed: bool = False,
     on_measure: Judge | None = None,
+    on_log: Log | None = None,
 ) -> str:
     """Train until the budget is spent, validation ends it, or Ctrl-C; return how it ended.
 
@@ -53,6 +58,7 @@ def train(
         folder: gets model, checkpoint, curves and notes.
         resumed: whether to begin with the folder's checkpoint.
         on_measure: gets each validation; it may return a reason to end the training.
+        on_log: gets the numbers of each point of the curves.
 
     Raises:
         SettingsError: the environment refuses its arguments, there is no checkpoint or a damaged
@@ -64,7 +70,7 @@ def train(
         venv = adapt(make_worlds(experiment, experiment.training.worlds))
         try:
             with _quiet_writer():
-                return _train(experiment, folder, venv, resumed, on_measure)
+                return _train(experiment, folder, venv, resumed, on_measure, on_log)
         except OSError as error:
             raise SettingsError(_cannot_write(folder, error)) from error
         finally:
@@ -104,6 +110,7 @@ def _train(
     venv: GymnasiumVecEnv,
     resumed: bool,
     on_measure: Judge | None,
+    on_log: Log | None,
 ) -> str:
     model = make_model(experiment, venv)
     model.set_logger(Logger(str(folder.log), []))
@@ -111,6 +118,7 @@ def _train(
     if resumed:
         callback_state = resume(folder.checkpoint, model, venv)
     else:
+        begin(model, experiment, folder)
         # stable-baselines3 has just given the worlds neighbouring seeds.
         venv.set_seeds(spread_seeds(experiment.seed, Purpose.TRAINING, venv.num_envs))
         venv.set_options(stage_options(experiment.curriculum, 0, venv.num_envs))
@@ -140,6 +148,8 @@ def _train(
         # Only now, with a state that fits: they remove what was written after the checkpoint.
         model.logger.output_formats.append(_Curve(folder, first))
         model.logger.output_formats.append(TensorBoard(str(folder.log), first))
+        if on_log is not None:
+            model.logger.output_formats.append(_Told(on_log))
         with _on_interrupt(lambda: stop.request(INTERRUPTED)):
             model.learn(
                 experiment.training.timesteps - first,
@@ -177,6 +187,7 @@ def check_resumable(folder: RunFolder) -> None:
     if outcome not in ("unfinished", INTERRUPTED):
         raise SettingsError(
             f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
+            f"to train on: arkanoid train --from {quoted(folder.path)}; "
             f"to measure it: arkanoid evaluate {quoted(folder.path)}"
         )
 
@@ -214,6 +225,22 @@ class _Curve(CurveWriter, KVWriter):
 
     def __init__(self, folder: RunFolder, first: int) -> None:
         super().__init__(folder.curve, first)
+
+
+class _Told(KVWriter):
+    """Tells a function the numbers that are logged."""
+
+    def __init__(self, on_log: Log) -> None:
+        self._on_log = on_log
+
+    def write(
+        self, key_values: dict[str, Any], key_excluded: dict[str, Any], step: int = 0
+    ) -> None:
+        """Tell them."""
+        self._on_log(step, numbers_of(key_values))
+
+    def close(self) -> None:
+        """Nothing: whoever is told may want to know more after the training."""
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from ..experiment.lineage import describe_lineage
 from ..experiment.reading import to_toml
 from ..experiment.runs import ModelFile
 from ..experiment.settings import Experiment
@@ -52,6 +53,13 @@ def describe_agent(
         "training_levels": experiment.config.plain()["levels"],
         "timesteps": experiment.training.timesteps,
         "models": [_model_row(model) for model in models],
+        "lineages": sorted(
+            {
+                sentence
+                for model in models
+                if (sentence := describe_lineage(model.run.read_notes().get("lineage")))
+            }
+        ),
         "origin": list(_origin_rows(models[0].run.read_notes())),
         "curves": len(curves),
         "suites": suites,

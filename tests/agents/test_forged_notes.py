@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
+from arkanoid.agents.experiment.lineage import describe_lineage
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder, pretrained_run
 from arkanoid.agents.learn import training
 from arkanoid.agents.learn.curves import read_curve
@@ -32,6 +33,8 @@ NOTES: dict[str, Any] = {
     "sessions": [{"started": "2026-01-01T00:00:00.000", "seconds": 27.4, "from": 0, "to": 2048}],
     "timesteps": 2048,
     "weights": "5a95",
+    "lineage": {"kind": "model", "name": "run/best.zip", "decisions": 4096, "weights": "a07f"},
+    "trackers": {"mlflow": "0123"},
 }
 
 
@@ -63,7 +66,9 @@ def run(tmp_path: Path) -> RunFolder:
 def show(run: RunFolder) -> str:
     """Return what a report shows of a run's notes."""
     rows = [[""] * 7, _model_row(ModelFile.find(str(run.path)))]
-    rows += [[*row, "", "", "", "", ""] for row in _origin_rows(run.read_notes())]
+    notes = run.read_notes()
+    rows += [[*row, "", "", "", "", ""] for row in _origin_rows(notes)]
+    rows.append([describe_lineage(notes.get("lineage")), *[""] * 6])
     return str(table(rows))
 
 
@@ -105,7 +110,9 @@ def test_reproduce_prints_nothing_that_a_terminal_obeys(
 ) -> None:
     """It printed the hash and the origin of somebody else's run as they were."""
     notes = {**NOTES, "weights": "\x1b[31mred", "versions": {"\x1b[2J": "\x1b[31m"}}
+    notes["lineage"] = {**NOTES["lineage"], "name": "\x1b[32mgreen"}
     run.notes.write_text(json.dumps(notes))
+    shutil.copy(run.model, run.start)
 
     def train(experiment: Any, again: RunFolder) -> str:
         again.add_notes(weights="5a95")
@@ -116,6 +123,7 @@ def test_reproduce_prints_nothing_that_a_terminal_obeys(
     out = capsys.readouterr().out
     assert r"\x1b[31mred" in out
     assert r"\x1b[2J" in out
+    assert r"\x1b[32mgreen" in out
     assert all(line.isprintable() for line in out.splitlines())
 
 
@@ -144,7 +152,7 @@ def test_a_page_shows_what_a_terminal_would_obey() -> None:
     facts: dict[str, Any] = {
         **{"name": "\x1b[31m", "env_id": "a", "observation": "b", "training_levels": "\x07"},
         **{"timesteps": 1, "models": [], "origin": [["\x1b[2J", "\x00"]], "curves": 0},
-        **{"suites": [], "settings": ""},
+        **{"lineages": ["\x1b[32m"], "suites": [], "settings": ""},
     }
     pictures = {"play.gif": b""}
     for page in (as_markdown(facts, {"play.gif": "play.gif"}), as_html(facts, pictures)):

@@ -46,6 +46,8 @@ READERS = {
     **COMMANDS,
     "resume": ["train", "--resume", "RUN"],
     "reproduce": ["reproduce", "RUN"],
+    "from": ["train", "--from", "RUN"],
+    "dataset": ["dataset", "arkanoid/received-v0", "RUN"],
 }
 
 
@@ -134,6 +136,21 @@ def test_weights_that_are_a_program_are_refused(
     with zipfile.ZipFile(run.model) as archive:
         torch.load(io.BytesIO(archive.read("policy.pth")), weights_only=False)
     assert marker.exists()
+
+
+@pytest.mark.parametrize("trust", [[], ["--trust"]])
+def test_a_training_begins_with_numbers_only(
+    trust: list[str], run: RunFolder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither a run's model nor a lone file is unpickled, also not with --trust."""
+    marker = tmp_path / "was run"
+    forge_weights(run, marker)
+    lone = shutil.copy(run.model, tmp_path / "lone.zip")
+    for words in (["--from", str(run.path)], ["lite", "--from", str(lone)]):
+        assert cli.main(["train", *words, *trust, "--output", str(tmp_path / "runs")]) == 2
+        assert "same network" in capsys.readouterr().err
+    assert not marker.exists()
+    assert not (tmp_path / "runs").exists()
 
 
 def test_a_checkpoint_that_is_a_program_is_refused(

@@ -1,0 +1,215 @@
+"""`arkanoid dataset ID PLAYER ...`: writes games as a Minari data set, to learn from."""
+
+import argparse
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from ...envs.config import SEEN
+from ..experiment.datasets import Episode, Written, check_new, write_dataset
+from ..experiment.errors import SettingsError
+from ..experiment.seeds import Purpose, spread_seeds
+from .arguments import add_trust
+from .train import DEFAULT_CONFIG
+
+if TYPE_CHECKING:
+    from ...envs.batch.replays import Replay
+    from ..experiment.settings import Experiment
+
+REPLAY = ".replay"
+DEFAULT_GAMES = 20
+DEFAULT_DECISIONS = 2000
+_LOOK = "env."
+
+_EPILOG = """\
+PLAYER is a baseline (planner, ball-follower, ...), a run or model file, or *.replay files.
+
+  arkanoid dataset arkanoid/planner-v0 planner --config lite --level named --games 3
+  arkanoid dataset arkanoid/lite-v0 runs/lite-seed0-20260101-120000 --env.observation rgb
+  arkanoid dataset arkanoid/human-v0 monday.replay tuesday.replay
+  arkanoid train lite --imitation.dataset arkanoid/planner-v0
+
+--key value changes the game of a baseline; of models and replays only how their games are seen."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the command's arguments."""
+    parser.usage = "%(prog)s ID PLAYER... [options] [--key value ...]"
+    parser.add_argument("id", metavar="ID", help="of the new data set, such as arkanoid/mine-v0")
+    parser.add_argument("players", metavar="PLAYER", nargs="+", help="who plays, see below")
+    parser.add_argument(
+        "--config", help=f"the game that a baseline plays: as for train; default: {DEFAULT_CONFIG}"
+    )
+    parser.add_argument(
+        "--level", help='where games begin, as "named" (all named levels) or "seeds:0-9"'
+    )
+    parser.add_argument(
+        "--games",
+        type=_count,
+        default=DEFAULT_GAMES,
+        help=f"how many, on each level; default: {DEFAULT_GAMES}",
+    )
+    parser.add_argument(
+        "--decisions",
+        type=_count,
+        default=DEFAULT_DECISIONS,
+        help=f"after so many a game is truncated; default: {DEFAULT_DECISIONS}",
+    )
+    parser.add_argument(
+        "--games-seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="of the games, which no training, validation or evaluation plays; default: 0",
+    )
+    add_trust(parser)
+    parser.epilog = _EPILOG
+
+
+def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
+    """Play, write and say what was written; return the exit status."""
+    from ..experiment.settings import BASELINES
+
+    if arguments.games_seed < 0:
+        raise SettingsError(f"--games-seed must be at least 0, not {arguments.games_seed}")
+    check_new(arguments.id)
+    players = arguments.players
+    if all(player.endswith(REPLAY) for player in players):
+        written = _write_replays(arguments, overrides)
+    elif len(players) > 1:
+        raise SettingsError(
+            "several players: a data set is of one baseline or model, or of replays"
+        )
+    elif players[0] in BASELINES:
+        written = _write_baseline(arguments, overrides)
+    else:
+        written = _write_model(arguments, overrides)
+    print(
+        f"data set {arguments.id}: {written.episodes} games, {written.decisions:,} decisions, "
+        f"mean return {written.mean_return:.3f}\nfiles    {written.folder}"
+    )
+    return 0
+
+
+def _write_baseline(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> Written:
+    from ..experiment.settings import load_experiment
+    from ..measure.baselines import make_baseline
+
+    (name,) = arguments.players
+    experiment = load_experiment(arguments.config or DEFAULT_CONFIG, overrides)
+    # Baselines understand one observation only, whatever the data set shows.
+    played = experiment.config.of_the_game()
+    return _write_games(
+        arguments,
+        experiment,
+        played,
+        lambda worlds, seed: make_baseline(name, worlds, seed),
+        name,
+    )
+
+
+def _write_model(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> Written:
+    from ..experiment.runs import ModelFile
+
+    if arguments.config is not None:
+        raise SettingsError("--config is for baselines: a model plays the game of its run")
+    model = ModelFile.find(arguments.players[0], arguments.trust)
+    others = [(key, text) for key, text in overrides if not _is_look(key)]
+    experiment = model.run.experiment(others)
+    looks = [(key, text) for key, text in overrides if _is_look(key)]
+    # The network need not suit what the data set shows.
+    any_network = [("network.features", "auto")] if looks else []
+    shown = model.run.experiment([*others, *looks, *any_network])
+    from ..learn.model import load_policy
+
+    policy = load_policy(model, experiment)
+    return _write_games(
+        arguments, shown, experiment.game, lambda worlds, seed: policy, model.describe()["run"]
+    )
+
+
+def _write_games(
+    arguments: argparse.Namespace,
+    experiment: "Experiment",
+    played: Any,
+    make_policy: Callable[[Any, int], Any],
+    player: str,
+) -> Written:
+    """Let a policy play, and write its games as the experiment observes them."""
+    import gymnasium as gym
+
+    from ..measure.recording import record_games
+    from ..measure.suites import WHOLE_GAMES, EpisodeStart, find_starts
+
+    starts: tuple[EpisodeStart, ...] = (WHOLE_GAMES,)
+    if arguments.level is not None:
+        starts = find_starts(experiment, arguments.level)
+    episodes = record_games(
+        experiment,
+        make_policy,
+        played,
+        experiment.game,
+        spread_seeds(arguments.games_seed, Purpose.DATASET, arguments.games),
+        arguments.decisions,
+        starts,
+    )
+    env = gym.make(experiment.env_id, **experiment.game.plain())
+    return write_dataset(arguments.id, episodes, env, player, f"{player} plays Arkanoid")
+
+
+def _write_replays(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> Written:
+    # The game imports Numba, which is slow.
+    import gymnasium as gym
+
+    from ...envs.batch.playback import ReplayDivergedError
+    from ...envs.batch.replays import Replay
+    from ..experiment.reading import parse_toml_value
+
+    keywords = {}
+    for key, text in overrides:
+        if not key.startswith(_LOOK):
+            raise SettingsError(f"--{key}: replays have no settings but how their games are seen")
+        keywords[key.removeprefix(_LOOK)] = parse_toml_value(text)
+    try:
+        replays = [Replay.load(player) for player in arguments.players]
+        game = replays[0].config.of_the_game()
+        for replay, path in zip(replays, arguments.players, strict=True):
+            if replay.config.of_the_game() != game:
+                raise SettingsError(f"{path}: another game than that of {arguments.players[0]}")
+        env = gym.make("arkanoid:Arkanoid-v0", **{**game.plain(), **keywords})
+        episodes = _replayed(replays, keywords)
+        return write_dataset(arguments.id, episodes, env, "human", "replays of Arkanoid")
+    except OSError as error:
+        raise SettingsError(f"{error.filename}: {error.strerror}") from None
+    except (TypeError, ValueError, ReplayDivergedError) as error:
+        raise SettingsError(str(error)) from None
+
+
+def _replayed(replays: "list[Replay]", keywords: dict[str, Any]) -> Iterator[Episode]:
+    import numpy as np
+
+    from ...envs.batch.transitions import replay_transitions
+
+    for replay in replays:
+        steps: list[Any] = []
+        last = replay.result.decisions
+        for decision, step in enumerate(replay_transitions(replay, **keywords), 1):
+            steps.append(step)
+            if step.terminated or step.truncated or decision == last:
+                yield Episode(
+                    np.stack([steps[0].observation, *(one.next_observation for one in steps)]),
+                    np.stack([one.action for one in steps]),
+                    np.array([one.reward for one in steps]),
+                    step.terminated,
+                )
+                steps = []
+
+
+def _is_look(key: str) -> bool:
+    return key.startswith(_LOOK) and key.removeprefix(_LOOK) in SEEN
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"must be at least 1; got {text}")
+    return value
