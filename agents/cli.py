@@ -39,8 +39,8 @@ _WITHOUT_SETTINGS = {"play", "replay", "levels"}
 # Options of the other commands that are no settings: without and with a value.
 _FLAGS = {"--help", "--version", "--json", "--trust"}
 _OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
-_OPTIONS |= {"--config", "--decisions", "--games-seed", "--from", "--games", "--track"}
-_OPTIONS |= {"--trials"}
+_OPTIONS |= {"--budget", "--config", "--decisions", "--games-seed", "--from", "--games"}
+_OPTIONS |= {"--jobs", "--track", "--trials"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {

@@ -310,6 +310,9 @@ own. A reset without a seed continues the random numbers. The options are:
 An option stays in force for later episodes until a reset changes it or has a seed; None returns to
 the configuration.
 
+A vector environment's `set_start(world, options)` says how the next games of a world begin, and its
+present game goes on: so a training can choose levels while worlds restart by themselves.
+
 ## Episode End
 
 - *Terminated*: the last life is lost.

@@ -87,8 +87,8 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         Args:
             seed: of the game's random numbers, from 0 to 2^64 - 1.
             options: how this and the following episodes begin: ``"level"`` (a name or path, or the
-                number of a round), ``"seed"`` (of a generated level; not the game's) and
-                ``"difficulty"``; see `arkanoid.envs.levels.starts`.
+                number of a round), ``"seed"`` (of a generated level; not the game's),
+                ``"repeat"`` and ``"difficulty"``; see `arkanoid.envs.levels.starts`.
 
         Raises:
             TypeError, ValueError: the seed or an option is illegal; the game is as it was then.

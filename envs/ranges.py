@@ -35,7 +35,7 @@ from .rules import (
     SPEED_STAGE_MIN,
     UNBREAKABLE,
 )
-from .state import DECISION_LIMIT, DIVING, FLYING, GIVEN_SEED, LIFE_LOST
+from .state import DECISION_LIMIT, DIVING, FLYING, LIFE_LOST, REPEATED_SEED
 
 Range = tuple[float, float]  # the least and the largest legal number
 
@@ -130,7 +130,7 @@ WORLD_RANGES: dict[str, Range] = {
     "next_life": (1, _MANY + EXTRA_LIFE_EVERY),
     "first_random": _ANY_SEED,
     "first_decision": (0, _MANY),
-    "start": (0, GIVEN_SEED),
+    "start": (0, REPEATED_SEED),
     "capped": (0, _MOST_TICKS),
     "start_round": (1, 10**9),
     "start_seed": (0, (1 << 63) - 1),

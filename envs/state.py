@@ -34,6 +34,7 @@ DECISION_LIMIT = 1
 AS_CONFIGURED = 0
 GIVEN_LAYOUT = 1
 GIVEN_SEED = 2
+REPEATED_SEED = 3  # and every further round, too
 
 # A world remembers this number of latest changes of its bricks, so that observers need not look at
 # all bricks. It is a power of two.

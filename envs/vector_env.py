@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .actions import action_meanings
 from .batch.batch import Autoreset, Batch
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
+from .batch.starts import set_start
 from .batch.stepping import tabulate_outcomes
 from .checks import check_boolean, check_integer, check_seeds
 from .config import Config
@@ -124,11 +125,11 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """Begin an episode in every world, or in those of ``options["reset_mask"]`` (bool [n]).
 
         An int, at most 2^64 - n, seeds world ``i`` with ``seed + i``; a sequence gives each world's
-        own seed; None goes on with each world's generator. The options ``"level"``, ``"seed"`` and
-        ``"difficulty"`` say how this and the following episodes of those worlds begin, see
-        `arkanoid.envs.levels.starts`. They stay in force until the world gets a seed or other
-        options. With `episodic_life` a world's game goes on after the loss of a life, unless it
-        gets either.
+        own seed; None goes on with each world's generator. The options ``"level"``, ``"seed"``,
+        ``"repeat"`` and ``"difficulty"`` say how this and the following episodes of those worlds
+        begin, see `arkanoid.envs.levels.starts`. They stay in force until the world gets a seed or
+        other options. With `episodic_life` a world's game goes on after the loss of a life, unless
+        it gets either.
 
         Raises:
             TypeError, ValueError: a seed or an option is illegal; the games are as they were then.
@@ -145,6 +146,11 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
                 seeds[index] = int(self.np_random.integers(1 << 62))
         self._batch.reset(mask, options, seeds if seed is not None or unseeded else None)
         return self._observations(), self._infos(self._batch.outcomes, mask)
+
+    def set_start(self, world: int, options: dict[str, Any]) -> None:
+        """Set how a world's next games begin, as `reset` does, while its present one goes on."""
+        check_options(options)
+        set_start(self._batch, world, options)
 
     def step(
         self, actions: Any

@@ -36,7 +36,14 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     print(f"again: {again.path}")
     if lineage is not None:
         print(printable(lineage))
-    if train(experiment, again) == INTERRUPTED:
+    # A trial of a search, for instance, may have been stopped before its end.
+    notes = folder.read_notes()
+    outcome, last = notes.get("outcome"), notes.get("timesteps", experiment.training.timesteps)
+
+    def stop_there(step: int, means: dict[str, float]) -> str | None:
+        return outcome if last <= step < experiment.training.timesteps else None
+
+    if train(experiment, again, on_measure=stop_there) == INTERRUPTED:
         return 130
     notes = again.read_notes()
     print(f"weights there  {printable(expected)}\nweights here   {notes['weights']}")

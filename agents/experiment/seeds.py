@@ -22,6 +22,7 @@ class Purpose(IntEnum):
     SAMPLER = 6  # the draws of a search
     BLIND = 7  # what a collapsed policy is compared with
     DATASET = 8  # games that are recorded to learn from
+    LEVELS = 9  # the draws of a training that chooses its levels
 
 
 def spread_seeds(seed: int, purpose: Purpose, count: int) -> list[int]:

@@ -155,6 +155,21 @@ class Curriculum:
         default=(),
         description="one number per stage; worlds begin in rounds 1 to this one, in turn",
     )
+    sampling: Literal["uniform", "value_loss", "positive_value_loss"] = Field(
+        default="uniform",
+        description="which level is played next: any, or again one where the advantages were large "
+        "(prioritised level replay): their magnitudes, or their positive parts",
+    )
+    new_levels: Fraction = Field(
+        default=0.5, description="part of the levels that is drawn as without replay"
+    )
+    temperature: Positive = Field(
+        default=1.0, description="of replay: probabilities are ranks ** (-1 / temperature)"
+    )
+    staleness: Fraction = Field(
+        default=0.1, description="part of replay that goes to levels not played for long"
+    )
+    kept_levels: Count = Field(default=1000, description="levels among which replay chooses")
 
     def __post_init__(self) -> None:
         if any(later <= earlier for earlier, later in itertools.pairwise(self.stages)):
@@ -293,6 +308,7 @@ class Experiment:
                 f"({self.training.worlds}) = {collected}"
             )
         self._check_features()
+        self._check_sampling()
 
     def _check_features(self) -> None:
         """Refuse observations that no network here takes, and features that do not suit one."""
@@ -316,6 +332,30 @@ class Experiment:
             )
         if self.network.features in ("auto", "lattice", "planes") and not self.network.channels:
             raise SettingsError("'network.channels' must name at least one convolution's channels")
+
+    def _check_sampling(self) -> None:
+        """Refuse a replay of levels that cannot be chosen, or that are kept for the test."""
+        if self.curriculum.sampling == "uniform":
+            return
+        # Imported on demand, because it brings kernels.
+        from ...envs.levels.plan import TEST_SEEDS, seed_range
+
+        try:
+            seeds = seed_range(self.config.levels)
+        except ValueError as error:
+            raise SettingsError(f"'env.levels': {error}") from None
+        if seeds is None:
+            return
+        if seeds.start < TEST_SEEDS.stop and seeds.stop > TEST_SEEDS.start:
+            raise SettingsError(
+                f"'env.levels' = {self.config.levels!r} has test seeds, from {TEST_SEEDS.start:,} "
+                f"on: a curriculum chooses among training levels only"
+            )
+        if self.curriculum.rounds:
+            raise SettingsError(
+                "'curriculum.sampling' chooses seeds where 'env.levels' are generated: leave out "
+                "'curriculum.rounds'"
+            )
 
 
 def load_experiment(config: str, overrides: Sequence[tuple[str, str]] = ()) -> Experiment:

@@ -13,6 +13,7 @@ from gymnasium.spaces import Space
 
 from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
 from .curves import STEP, is_number
+from .levels.sampling import LEVELS
 from .tensors import is_like
 
 State = dict[str, Any]
@@ -146,6 +147,8 @@ def _check_callbacks(state: Any) -> None:
     """Raise ValueError unless callbacks have left numbers, and no best one where there is none."""
     own = dict(state) if isinstance(state, dict) else None
     validation = own.pop("validation", {}) if own is not None else None
+    if own is not None:
+        own.pop(LEVELS, None)  # `check_levels` looks at it
     if isinstance(validation, dict) and validation.get("best", 0.0) is None:
         validation = {**validation, "best": 0.0}
     _check_numbers(own, "callbacks")

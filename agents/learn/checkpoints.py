@@ -22,8 +22,10 @@ from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
 from ..experiment.files import cause, quoted
 from ..experiment.provenance import memory_gib
+from ..experiment.settings import Experiment
 from ..experiment.worlds import native
 from .checkpoint_form import RECENT, State, check_state
+from .levels.sampling import check_levels
 from .tensors import read_tensors, write_tensors
 
 # What stable-baselines3 counts and keeps from one rollout to the next.
@@ -176,13 +178,14 @@ def read_checkpoint(path: Path) -> State:
     return state
 
 
-def resume(path: Path, model: PPO, venv: GymnasiumVecEnv) -> dict[str, Any]:
+def resume(path: Path, model: PPO, venv: GymnasiumVecEnv, experiment: Experiment) -> dict[str, Any]:
     """Bring a model and its environment into the state in a file; return its callbacks' state.
 
     Raises `SettingsError` if the file cannot be read, or its state does not fit them.
     """
     state = read_checkpoint(path)
     try:
+        check_levels(state["callbacks"], experiment)
         restore(state, model, venv)
     except Exception as error:  # a forged state can raise anything
         raise _damaged(path, str(error)) from error

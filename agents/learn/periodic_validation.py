@@ -1,5 +1,6 @@
 """Measuring the policy while it trains: which model is the best, and when to stop."""
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -18,7 +19,10 @@ from .model import ModelPolicy
 
 _LOGGED = tuple(name for name in MEASURES if name != "bricks_left")
 
-# Takes the number of decisions and the means of `MEASURES`; may return a reason to stop.
+# The processor seconds of the training so far, without its validation: in this process.
+SECONDS = "processor_seconds"
+# Takes the number of decisions, and the means of `MEASURES` and `SECONDS`; may return a reason to
+# stop.
 Judge = Callable[[int, dict[str, float]], str | None]
 
 
@@ -56,6 +60,8 @@ class PeriodicValidation(BaseCallback):
         self._on_best = on_best
         self._stop = stop
         self._judge = judge
+        # When the training began; each measurement moves it on by its own time.
+        self._began = time.process_time()
         self._warn = warn
         self._stuck: set[int] = set()
         self._told: set[int] = set()
@@ -64,6 +70,9 @@ class PeriodicValidation(BaseCallback):
         self._starts = find_starts(experiment, levels) if levels else (WHOLE_GAMES,)
         num_worlds = len(self._starts) * self._settings.episodes
         self._worlds = make_worlds(experiment, num_worlds, experiment.game)
+
+    def _on_training_start(self) -> None:
+        self._began = time.process_time()
 
     def _on_rollout_start(self) -> None:
         if self.model.num_timesteps >= self._state["due"]:
@@ -79,7 +88,8 @@ class PeriodicValidation(BaseCallback):
 
     def measure(self) -> None:
         """Play, log, report the model if it is the best, and ask for the end if it is time."""
-        means = self._play()
+        begun = time.process_time()
+        means = self._play() | {SECONDS: begun - self._began}
         step = self.model.num_timesteps
         for name in _LOGGED:
             self.logger.record(f"validation/{name}", means[name])
@@ -94,6 +104,7 @@ class PeriodicValidation(BaseCallback):
             state["best"] = value
             self._on_best(self.model)  # type: ignore[arg-type]
         reason = self._judge(step, means) if self._judge is not None else None
+        self._began += time.process_time() - begun
         if reason is not None:
             self._stop(reason)
         elif settings.stop_at and means["cleared"] >= settings.stop_at:

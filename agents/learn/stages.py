@@ -28,12 +28,20 @@ class Stages(BaseCallback):
         self._state = state
         state.setdefault("stage", 0)
 
+    @property
+    def _stage(self) -> int:
+        return int(self._state["stage"])
+
+    def options(self) -> list[dict[str, Any]]:
+        """Return the options for `reset` of each world in the present stage."""
+        return stage_options(self._curriculum, self._stage, self._venv.num_envs)
+
     def _on_rollout_start(self) -> None:
         stage = stage_at(self._curriculum, self.model.num_timesteps / self._timesteps)
-        if stage == self._state["stage"]:
+        if stage == self._stage:
             return
         self._state["stage"] = stage
-        self._venv.set_options(stage_options(self._curriculum, stage, self._venv.num_envs))
+        self._venv.set_options(self.options())
         model: Any = self.model
         # The model may have wrapped our environment in its own.
         model._last_obs = model.env.reset()

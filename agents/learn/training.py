@@ -28,9 +28,9 @@ from .callbacks import GameStatistics, ProgressBar, StopRequest
 from .checkpoints import Checkpoints, resume
 from .collapse import CollapseWatch, Warn
 from .curves import CurveWriter, numbers_of
+from .levels.sampling import make_stages
 from .model import make_model, save_model
 from .periodic_validation import Judge, PeriodicValidation
-from .stages import Stages, stage_options
 from .starting import begin
 
 # Takes the number of decisions, and numbers by their names.
@@ -46,6 +46,7 @@ def train(
     resumed: bool = False,
     on_measure: Judge | None = None,
     on_log: Log | None = None,
+    shows_progress: bool = True,
 ) -> str:
     """Train until the budget is spent, validation ends it, or Ctrl-C; return how it ended.
 
@@ -59,6 +60,7 @@ def train(
         resumed: whether to begin with the folder's checkpoint.
         on_measure: gets each validation; it may return a reason to end the training.
         on_log: gets the numbers of each point of the curves.
+        shows_progress: whether there is a progress bar.
 
     Raises:
         SettingsError: the environment refuses its arguments, there is no checkpoint or a damaged
@@ -70,7 +72,7 @@ def train(
         venv = adapt(make_worlds(experiment, experiment.training.worlds))
         try:
             with _quiet_writer():
-                return _train(experiment, folder, venv, resumed, on_measure, on_log)
+                return _train(experiment, folder, venv, resumed, on_measure, on_log, shows_progress)
         except OSError as error:
             raise SettingsError(_cannot_write(folder, error)) from error
         finally:
@@ -111,17 +113,19 @@ def _train(
     resumed: bool,
     on_measure: Judge | None,
     on_log: Log | None,
+    shows_progress: bool,
 ) -> str:
     model = make_model(experiment, venv)
     model.set_logger(Logger(str(folder.log), []))
     callback_state: dict[str, Any] = {}
     if resumed:
-        callback_state = resume(folder.checkpoint, model, venv)
-    else:
+        callback_state = resume(folder.checkpoint, model, venv, experiment)
+    stages = make_stages(experiment, venv, callback_state)
+    if not resumed:
         begin(model, experiment, folder)
         # stable-baselines3 has just given the worlds neighbouring seeds.
         venv.set_seeds(spread_seeds(experiment.seed, Purpose.TRAINING, venv.num_envs))
-        venv.set_options(stage_options(experiment.curriculum, 0, venv.num_envs))
+        venv.set_options(stages.options())
     stop = StopRequest()
 
     def warn(message: str) -> None:
@@ -138,12 +142,11 @@ def _train(
         lambda last: folder.note_session(started, first, last),
     )
     # Checkpoints come after the callbacks whose state they hold.
-    stages = Stages(experiment, venv, callback_state)
     watch = CollapseWatch(experiment, callback_state, warn)
     callbacks: list[BaseCallback] = [GameStatistics(), watch, stages]
     callbacks += [validation] if validation is not None else []
     progress = ProgressBar()
-    callbacks += [checkpoints, progress, stop]
+    callbacks += [checkpoints, *([progress] if shows_progress else []), stop]
     try:
         # Only now, with a state that fits: they remove what was written after the checkpoint.
         model.logger.output_formats.append(_Curve(folder, first))

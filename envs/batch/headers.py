@@ -6,7 +6,7 @@ from typing import Any
 from ..levels.generator import MAX_SEED
 from ..levels.starts import MAX_ROUND
 from ..ranges import OUTCOME_RANGES, WORLD_RANGES
-from ..state import GIVEN_SEED
+from ..state import REPEATED_SEED
 
 Check = Callable[[Any], bool]
 # A check, or a table with exactly these keys.
@@ -89,7 +89,7 @@ _HEADER: Form = {
     "start": {
         "random": _is_integer(*WORLD_RANGES["random"]),
         "fields": {
-            "start": _is_integer(0, GIVEN_SEED),
+            "start": _is_integer(0, REPEATED_SEED),
             "start_round": _is_integer(1, MAX_ROUND),
             "start_seed": _is_integer(0, MAX_SEED),
             "start_difficulty": _is_difficulty,

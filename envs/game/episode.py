@@ -10,7 +10,15 @@ from ..rules import (
     FIELD_WIDTH,
     NO_POWER,
 )
-from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, Levels, RulesRecord, WorldRecord
+from ..state import (
+    AS_CONFIGURED,
+    GIVEN_LAYOUT,
+    GIVEN_SEED,
+    REPEATED_SEED,
+    Levels,
+    RulesRecord,
+    WorldRecord,
+)
 from .beams import remove_beams
 from .boss import remove_shards
 from .bricks import lay_bricks
@@ -41,7 +49,7 @@ def begin_episode(world: WorldRecord, rules: RulesRecord, levels: Levels) -> Non
     if world.start == AS_CONFIGURED:
         begin_round(world, rules, levels)
         return
-    if world.start == GIVEN_SEED:
+    if world.start == GIVEN_SEED or world.start == REPEATED_SEED:
         lay_level(world.kind, world.start_seed, _difficulty(world, rules, 0))
     elif world.start == GIVEN_LAYOUT:
         for cell in range(CELLS):
@@ -55,7 +63,9 @@ def begin_round(world: WorldRecord, rules: RulesRecord, levels: Levels) -> None:
     index = world.round_number - 1
     named = levels.shape[0] if rules.table_counts == 1 else 0
     boss = 0
-    if named > 0 and (index < named or rules.endless == 0):
+    if world.start == REPEATED_SEED:
+        lay_level(world.kind, world.start_seed, _difficulty(world, rules, index))
+    elif named > 0 and (index < named or rules.endless == 0):
         index %= named
         boss = int(levels[index].boss)
         for cell in range(CELLS):

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_integer, check_number
+from ..checks import check_boolean, check_integer, check_number
 from ..config import Config
 from ..rules import EMPTY
-from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED
+from ..state import AS_CONFIGURED, GIVEN_LAYOUT, GIVEN_SEED, REPEATED_SEED
 from .generator import MAX_SEED
 from .plan import LevelPlan, check_boss, level_table
 
@@ -17,6 +17,7 @@ from .plan import LevelPlan, check_boss, level_table
 START_OPTIONS = {
     "level": "the first level: its name, the path of its file, or the number of a round",
     "seed": "the first level: the one that the generator makes of this seed, from 0 to 2^63 - 1",
+    "repeat": "with a seed: whether all further rounds are this level, too",
     "difficulty": "the difficulty of all generated levels, in [0, 1]",
 }
 MAX_ROUND = 10**9
@@ -50,9 +51,13 @@ def read_start(options: dict[str, Any], config: Config, plan: LevelPlan) -> dict
         level = fspath(level)
     if level is not None and seed is not None:
         raise ValueError(f"give reset either a level or a seed; got both, {level!r} and {seed!r}")
+    repeat = options.get("repeat", False)
+    check_boolean("options['repeat']", repeat)
+    if repeat and seed is None:
+        raise ValueError("options['repeat'] repeats the level of a seed: give reset 'seed', too")
     fields: dict[str, Any] = {}
     if "level" in options or "seed" in options:
-        fields |= _first_round(level, seed, config, plan)
+        fields |= _first_round(level, seed, repeat, config, plan)
     if "difficulty" in options:
         difficulty = options["difficulty"]
         if difficulty is not None:
@@ -61,10 +66,13 @@ def read_start(options: dict[str, Any], config: Config, plan: LevelPlan) -> dict
     return fields
 
 
-def _first_round(level: Any, seed: Any, config: Config, plan: LevelPlan) -> dict[str, Any]:
+def _first_round(
+    level: Any, seed: Any, repeat: bool, config: Config, plan: LevelPlan
+) -> dict[str, Any]:
     if seed is not None:
         check_integer("options['seed']", seed, 0, MAX_SEED)
-        return {"start": GIVEN_SEED, "start_round": 1, "start_seed": seed, "start_boss": 0}
+        start = REPEATED_SEED if repeat else GIVEN_SEED
+        return {"start": start, "start_round": 1, "start_seed": seed, "start_boss": 0}
     number = 1
     if isinstance(level, str):
         check_boss(config, level)

@@ -25,9 +25,10 @@ from arkanoid.agents.learn.callbacks import ProgressBar
 from arkanoid.agents.learn.checkpoints import read_checkpoint, write_checkpoint
 from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.learn.model import load_policy
+from arkanoid.agents.learn.search.space import load_space
+from arkanoid.agents.learn.search.study import open_study
 from arkanoid.agents.learn.tensors import read_tensors
 from arkanoid.agents.learn.training import INTERRUPTED, train
-from arkanoid.agents.learn.tuning import load_space, open_study
 from helpers.runs import SMALL, sentence, small
 
 
@@ -330,7 +331,7 @@ def test_a_damaged_study_is_named(
     if not content:
         assert open_study(tmp_path, space, 0).trials == []
         return
-    arguments = ["tune", "quick", "--validation.every", "9", "--study", str(tmp_path)]
+    arguments = ["tune", "quick", "--study", str(tmp_path)]
     error = sentence(arguments, capsys)
     assert str(journal) in error
     assert "remove it" in error
@@ -350,9 +351,10 @@ def test_a_study_of_another_space_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     space = tmp_path / "space.toml"
-    settings = {**SMALL, "training.timesteps": "256", "validation.every": "256"}
-    settings["validation.episodes"] = "1"
+    settings = {**SMALL, "validation.episodes": "1"}
+    del settings["training.timesteps"]
     arguments = ["tune", "quick", "--space", str(space), "--study", str(tmp_path / "study")]
+    arguments += ["--budget", "0.3", "--jobs", "1"]
     arguments += [f"--{key}={value}" for key, value in settings.items()]
     space.write_text('[parameters]\n"ppo.gamma" = {choices = [0.9]}\n')
     assert cli.main([*arguments, "--trials", "1"]) == 0

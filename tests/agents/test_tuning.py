@@ -5,6 +5,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,9 @@ from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.packaged import packaged_configs
 from arkanoid.agents.experiment.reading import read_settings
-from arkanoid.agents.experiment.settings import Experiment
-from arkanoid.agents.learn.tuning import best_as_toml, load_space, open_study
+from arkanoid.agents.experiment.settings import Experiment, load_experiment
+from arkanoid.agents.learn.search.space import load_space
+from arkanoid.agents.learn.search.study import best_as_toml, open_study
 from helpers.runs import sentence
 from optuna.storages.journal import JournalFileBackend
 
@@ -30,9 +32,9 @@ startup = 1
 "network.activation" = { choices = ["relu", "elu"] }
 "env.life_penalty" = { choices = [0.1, 0.2] }
 """
-SMALL = ["--training.timesteps", "2048", "--training.worlds", "8", "--ppo.n_steps", "64"]
-SMALL += ["--ppo.batch_size", "256", "--validation.every", "1024", "--validation.episodes", "2"]
-SMALL += ["--env.max_decisions", "150"]
+SMALL = ["--training.worlds", "8", "--ppo.n_steps", "64", "--ppo.batch_size", "256"]
+SMALL += ["--validation.episodes", "2", "--env.max_decisions", "150"]
+QUICK = ["--budget", "0.3", "--jobs", "1"]
 
 
 def space_file(folder: Path, text: str = SPACE) -> str:
@@ -41,10 +43,16 @@ def space_file(folder: Path, text: str = SPACE) -> str:
     return str(path)
 
 
+def best_number(best: str) -> str:
+    match = re.search(r"trial (\d+)", best)
+    assert match is not None
+    return match[1]
+
+
 def test_a_search_resumes_and_prints_the_best(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    arguments = ["tune", "quick", *SMALL, "--space", space_file(tmp_path)]
+    arguments = ["tune", "quick", *SMALL, *QUICK, "--space", space_file(tmp_path)]
     arguments += ["--study", str(tmp_path / "study")]
     assert cli.main([*arguments, "--trials", "2"]) == 0
     first = capsys.readouterr().out
@@ -66,7 +74,12 @@ def test_a_search_resumes_and_prints_the_best(
     assert experiment.env["life_penalty"] in (0.1, 0.2)
     # Texts were quoted twice: no trial could choose one.
     assert experiment.network.activation in ("relu", "elu")
-    study = open_study(tmp_path / "study", load_space(space_file(tmp_path)), 0)
+    # It trains as long as the best trial.
+    (run,) = (tmp_path / "study").glob(f"trial{best_number(best)}-*")
+    config = load_experiment(str(run / "config.toml"))
+    assert experiment.training.timesteps == config.training.timesteps
+    space = replace(load_space(space_file(tmp_path)), budget=0.3)
+    study = open_study(tmp_path / "study", space, 0)
     value = max(
         trial.value or 0.0
         for trial in study.trials
@@ -81,7 +94,8 @@ def test_settings_that_contradict_each_other_make_no_trial(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = space_file(tmp_path, '[parameters]\n"ppo.batch_size" = { choices = [300, 330] }')
-    arguments = ["tune", "quick", *SMALL, "--space", path, "--study", str(tmp_path / "study")]
+    arguments = ["tune", "quick", *SMALL, *QUICK, "--space", path]
+    arguments += ["--study", str(tmp_path / "study")]
     assert cli.main([*arguments, "--trials", "2"]) == 2
     out, err = capsys.readouterr()
     assert "'ppo.batch_size'" in out
@@ -89,10 +103,12 @@ def test_settings_that_contradict_each_other_make_no_trial(
 
 
 def test_the_packaged_space_is_valid_and_is_not_listed_as_a_config() -> None:
-    assert packaged_configs(".space.toml") == ["ppo"]
-    assert "ppo" not in packaged_configs()
-    space = load_space("ppo")
-    assert {"ppo.learning_rate", "network.hidden"} <= {p.key for p in space.parameters}
+    assert packaged_configs(".space.toml") == ["ppo", "wide"]
+    assert not {"ppo", "wide"} & set(packaged_configs())
+    keys = {key for parameter in load_space("ppo").parameters for key in parameter.keys}
+    assert {"ppo.learning_rate", "network.hidden", "training.worlds"} <= keys
+    keys = {key for parameter in load_space("wide").parameters for key in parameter.keys}
+    assert {"env.life_penalty", "curriculum.stages", "network.features"} <= keys
 
 
 @pytest.mark.parametrize(
@@ -100,8 +116,27 @@ def test_the_packaged_space_is_valid_and_is_not_listed_as_a_config() -> None:
     [
         ("", ["[parameters]"]),
         ("mesure = 3", ["unknown key 'mesure'", "measure"]),
-        ('measure = "hits"', ["'measure'", "'hits'"]),
+        ('measure = "hit"', ["'measure'", "'hit'", "'hits'"]),
         ("startup = -1", ["'startup'", "-1"]),
+        ("measurements = 0", ["'measurements'", "from 1"]),
+        ("budget = 0", ["'budget'", "processor seconds"]),
+        ("budget = nan", ["'budget'", "processor seconds"]),
+        ("warmup = -1", ["'warmup'", "at least 0"]),
+        ('[parameters]\n"training.timesteps" = {low = 1, high = 2}', ["follows from 'budget'"]),
+        # Each choice of the penalty made other returns.
+        (
+            'measure = "return"\n[parameters]\n"env.life_penalty" = {choices = [0.1, 1.0]}',
+            ["'return'", "'env.life_penalty'", "'hits'"],
+        ),
+        ('[parameters]\n"a" = {choices = [{ppo.gama = 1}]}', ["'ppo.gama'", "'ppo.gamma'"]),
+        ('[parameters]\n"a" = {choices = [{ppo.gamma = 2.0}]}', ["'ppo.gamma'", "at most 1"]),
+        ('[parameters]\n"a" = {choices = [{env.frame_ship = 2}]}', ["'frame_skip'"]),
+        ('[parameters]\n"a" = {choices = [{ppo.gamma = 1.0}, 3]}', ["all tables"]),
+        ('[parameters]\n"env" = {choices = [{env.lives = 1}]}', ["a name of their own"]),
+        (
+            '[parameters]\n"a" = {choices = [{ppo.gamma = 1.0}]}\n"ppo.gamma" = {choices = [0.9]}',
+            ["'ppo.gamma'", "by two"],
+        ),
         ('[parameters]\n"ppo.gama" = {low = 0.1, high = 0.2}', ["'ppo.gama'", "'ppo.gamma'"]),
         ('[parameters]\n"ppo.gamma" = 3', ["'ppo.gamma'", "a table"]),
         ('[parameters]\n"ppo.gamma" = {low = 0.1}', ["'ppo.gamma'", "'low' and 'high'"]),
@@ -194,7 +229,7 @@ def test_the_study_of_another_search_is_named_before_the_training(
     study.mkdir()
     make(study)
     path = space_file(tmp_path, '[parameters]\n"ppo.gamma" = {low = 0.9, high = 1.0}')
-    arguments = ["tune", "quick", *SMALL, "--space", path, "--study", str(study)]
+    arguments = ["tune", "quick", *SMALL, *QUICK, "--space", path, "--study", str(study)]
     assert str(study / "study.journal") in sentence([*arguments, "--trials", "3"], capsys)
     assert [file.name for file in study.iterdir()] == ["study.journal"]
 

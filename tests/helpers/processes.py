@@ -75,12 +75,18 @@ def run_arkanoid(
     return run(*ARKANOID, *arguments, **options)
 
 
-def start_arkanoid(*arguments: str | Path) -> subprocess.Popen[str]:
-    """Start the command `arkanoid` and return its process, for a test that sends it signals."""
+def start_arkanoid(
+    *arguments: str | Path, start_new_session: bool = False
+) -> subprocess.Popen[str]:
+    """Start the command `arkanoid` and return its process, for a test that sends it signals.
+
+    With `start_new_session` its processes form a group of their own.
+    """
     return subprocess.Popen(
         [*ARKANOID, *map(str, arguments)],
         env={**os.environ, "PYTHONIOENCODING": "utf-8"},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         encoding="utf-8",
+        start_new_session=start_new_session,
     )

@@ -1,0 +1,1 @@
+"""Prioritised level replay: the training chooses the levels from which it can learn most."""
