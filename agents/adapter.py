@@ -99,18 +99,29 @@ class GymnasiumVecEnv(VecEnv):
 
     def step_wait(self) -> VecEnvStepReturn:
         """Step all worlds; return observations, rewards (float32), dones and one info per world."""
-        observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
+        observations, rewards, dones, ended = self.step_batch(self._actions)
+        infos: list[dict[str, Any]] = [ended.get(world, {}) for world in range(self.num_envs)]
+        return _own(observations), np.array(rewards, np.float32), dones, infos
+
+    def step_batch(self, actions: Any) -> tuple[Any, Any, NDArray[np.bool_], dict[int, Any]]:
+        """Step all worlds without copies, for trainers that take whole arrays.
+
+        Returns:
+            The environment's own observations [worlds, ...] and rewards [worlds], which its next
+            step may overwrite; which episodes ended, bool [worlds]; and their infos, by world.
+        """
+        observations, rewards, terminated, truncated, infos = self.env.step(actions)
         self._returns += rewards
         self._lengths += 1
         for key, sums in self._sums.items():
             sums += infos[key]
         dones = terminated | truncated
-        world_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        ended = {}
         for world in np.flatnonzero(dones).tolist():
             was_cut = bool(truncated[world] and not terminated[world])
-            world_infos[world] = self._final_info(infos, world, was_cut)
+            ended[world] = self._final_info(infos, world, was_cut)
             self.reset_infos[world] = world_info(infos, world)
-        return _own(observations), np.array(rewards, np.float32), dones, world_infos
+        return observations, rewards, dones, ended
 
     def _final_info(self, infos: dict[str, Any], world: int, was_cut: bool) -> dict[str, Any]:
         """Return the info of a world's ended episode, and begin the statistics of its next one."""

@@ -57,6 +57,15 @@ class Training:
 
     worlds: Count = Field(default=64, description="worlds that are played at once")
     timesteps: Decisions = Field(default=1_000_000, description="decisions of all worlds together")
+    trainer: Literal["fast", "sb3"] = Field(
+        default="fast",
+        description="fast: the loops of `FastPPO`; sb3: those of stable-baselines3; other weights",
+    )
+    device: Literal["cpu", "cuda", "auto"] = Field(
+        default="cpu",
+        description="where the network computes, in training and playing; auto: cuda if there is "
+        "one. A graphics card pays for pictures",
+    )
     torch_threads: Annotated[Integer, Field(ge=1, le=_MOST_THREADS)] = Field(
         default=1, description="threads of torch; the weights' last bits depend on it"
     )

@@ -78,7 +78,7 @@ def _pending(logger: Logger) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     """Return a copy of a value, with tensors for arrays and lists for queues."""
     if isinstance(value, torch.Tensor):
-        return value.detach().clone()
+        return value.detach().to("cpu", copy=True)
     if isinstance(value, np.ndarray):
         return torch.from_numpy(value.copy())
     if isinstance(value, np.generic):

@@ -110,7 +110,7 @@ def clone(model: PPO, data: Demonstrations, experiment: Experiment) -> Cloned:
         for batch in _batches(random.permutation(learned), settings.batch_size):
             loss, value_loss, _ = _losses(model, data, batch)
             optimizer.zero_grad()
-            (loss.mean() + experiment.ppo.vf_coef * value_loss.mean()).backward()  # type: ignore[no-untyped-call]
+            (loss.mean() + experiment.ppo.vf_coef * value_loss.mean()).backward()
             torch.nn.utils.clip_grad_norm_(weights, experiment.ppo.max_grad_norm)
             optimizer.step()
         result = _measure(model, data, held_out)

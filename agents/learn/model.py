@@ -25,6 +25,7 @@ from ..experiment.settings import Experiment, Ppo
 from ..experiment.worlds import make_worlds, native
 from ..measure.policy import Policy
 from .networks import ACTIVATIONS, extractor_arguments
+from .ppo import FastPPO
 from .tensors import is_like, read_entry, read_tensors
 
 # What stable-baselines3 would save, and only a training needs.
@@ -37,12 +38,14 @@ _WEIGHTS = "policy.pth"
 def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
     """Return an untrained PPO; all random numbers come from the experiment's seed.
 
-    Raises `SettingsError` if what it collects between two updates does not fit into memory.
+    Raises `SettingsError` if what it collects between two updates does not fit into memory, or the
+    device is not there.
     """
     torch.set_num_threads(experiment.training.torch_threads)
     ppo = experiment.ppo
     _check_memory(experiment, venv)
-    return PPO(
+    trainer = FastPPO if experiment.training.trainer == "fast" else PPO
+    return trainer(
         "CnnPolicy" if experiment.config.observation == "rgb" else "MlpPolicy",
         venv,
         learning_rate=_scheduled(ppo, ppo.learning_rate),
@@ -57,8 +60,26 @@ def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
         max_grad_norm=ppo.max_grad_norm,
         policy_kwargs=_policy_arguments(experiment, venv.get_attr("layout", 0)[0]),
         seed=experiment.seed,
-        device="cpu",
+        device=find_device(experiment.training.device),
     )
+
+
+def find_device(name: str) -> torch.device:
+    """Return the device of the setting ``training.device``.
+
+    Raises `SettingsError` if it is cuda, and torch finds none.
+    """
+    if name == "cpu":
+        return torch.device("cpu")
+    if torch.cuda.is_available():
+        return torch.device("cuda")
+    if name == "cuda":
+        built = "this torch is built without CUDA" if torch.version.cuda is None else "none found"
+        raise SettingsError(
+            f"'training.device' = 'cuda' needs a graphics card of NVIDIA ({built}): take 'auto' or "
+            "'cpu'"
+        )
+    return torch.device("cpu")
 
 
 def save_model(model: PPO, path: Path) -> None:
@@ -87,10 +108,11 @@ def load_policy(model: ModelFile, experiment: Experiment) -> Policy:
     Raises `SettingsError` if the file cannot be read or holds another network.
     """
     torch.set_num_threads(experiment.training.torch_threads)
+    device = _playing_device(model, experiment)
     network = _unpickled(model.path) if model.run.trusted else _rebuilt(model, experiment)
     settings = experiment.evaluation
     seed = spread_seed(settings.seed, Purpose.EVALUATION_POLICY)
-    return ModelPolicy(network, settings.deterministic, seed)
+    return ModelPolicy(network.to(device), settings.deterministic, seed)
 
 
 def read_weights(path: Path, experiment: Experiment) -> dict[str, torch.Tensor]:
@@ -108,6 +130,13 @@ def read_weights(path: Path, experiment: Experiment) -> dict[str, torch.Tensor]:
         ) from None
 
 
+def _playing_device(model: ModelFile, experiment: Experiment) -> torch.device:
+    """Return where a model plays: also without the graphics card that trained it."""
+    wanted = experiment.training.device
+    as_trained = wanted == "cuda" and model.run.experiment().training.device == "cuda"
+    return find_device("auto" if as_trained else wanted)
+
+
 class ModelPolicy:
     """A model as a policy.
 
@@ -120,7 +149,8 @@ class ModelPolicy:
     def __init__(self, model: PPO | BasePolicy, deterministic: bool, seed: int) -> None:
         self._model = model
         self._deterministic = deterministic
-        self._random = torch.Generator().manual_seed(seed).get_state()
+        self._device = torch.device(model.device)
+        self._random = torch.Generator(self._device).manual_seed(seed).get_state()
 
     def __call__(self, observations: NDArray[Any], worlds: NDArray[Any]) -> NDArray[Any]:
         """Return the actions for observations [n, ...].
@@ -131,10 +161,12 @@ class ModelPolicy:
         try:
             if self._deterministic:
                 return self._model.predict(observations, deterministic=True)[0]
-            with torch.random.fork_rng(devices=[]):
-                torch.random.set_rng_state(self._random)
+            on_card = self._device.type == "cuda"
+            random: Any = torch.cuda if on_card else torch.random
+            with torch.random.fork_rng(devices=[self._device] if on_card else []):
+                random.set_rng_state(self._random)
                 actions = self._model.predict(observations, deterministic=False)[0]
-                self._random = torch.random.get_rng_state()
+                self._random = random.get_rng_state()
             return actions
         except ValueError as error:
             reason = str(error).strip().partition("\n")[0]
