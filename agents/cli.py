@@ -6,7 +6,6 @@ runs is imported: playing by hand needs none of the packages for training.
 """
 
 import argparse
-import contextlib
 import itertools
 import sys
 from collections.abc import Sequence
@@ -18,7 +17,7 @@ from gymnasium.error import DependencyNotInstalled
 from .. import __version__
 from .experiment.errors import SettingsError
 from .experiment.files import cause, printable
-from .output import OutputError, checked_output
+from .output import OutputError, checked_output, notes
 
 # Each subcommand, which is its module's name, and what it does.
 COMMANDS = {
@@ -71,13 +70,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     0: done; 1: an extra is missing, a replay plays another game than was recorded, or the reader
     of the output has ended; 2: the user's mistake, or the output cannot be written; 130: Ctrl-C.
     """
-    try:
-        with checked_output(sys.stdout):
-            return _try(list(sys.argv[1:] if argv is None else argv))
-    except OutputError as error:
-        if error.closed:  # as in `arkanoid levels | head`
-            return 1
-        return _fail(f"the output cannot be written: {cause(error.reason)}", 2)
+    with notes(sys.stderr):
+        try:
+            with checked_output(sys.stdout):
+                return _try(list(sys.argv[1:] if argv is None else argv))
+        except OutputError as error:
+            if error.closed:  # as in `arkanoid levels | head`
+                return 1
+            return _fail(f"the output cannot be written: {cause(error.reason)}", 2)
 
 
 def _try(words: list[str]) -> int:
@@ -153,7 +153,6 @@ def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
 
 
 def _fail(message: str, status: int) -> int:
-    with contextlib.suppress(OSError):  # where this cannot be written, the status tells
-        # The message may quote a file of somebody else's.
-        print(f"arkanoid: error: {printable(message)}", file=sys.stderr)
+    # The message may quote a file of somebody else's. Where it cannot be written, the status tells.
+    print(f"arkanoid: error: {printable(message)}", file=sys.stderr)
     return status

@@ -1,11 +1,11 @@
-"""Standard output that tells its own errors from those of files."""
+"""Standard output that tells its own errors from those of files, and a standard error without."""
 
 import contextlib
 import errno
 import io
 import os
 from collections.abc import Iterator
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
 from typing import Any, TextIO
 
 
@@ -80,3 +80,41 @@ def _drop_the_rest(stream: TextIO) -> None:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, stream.fileno())
         os.close(nowhere)
+
+
+class _Notes:
+    """A stream that drops what it cannot write: notes and bars stop no run."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        try:
+            return self._stream.write(text)
+        except OSError:
+            _drop_the_rest(self._stream)
+            return len(text)
+
+    def flush(self) -> None:
+        try:
+            self._stream.flush()
+        except OSError:
+            _drop_the_rest(self._stream)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+@contextlib.contextmanager
+def notes(stream: TextIO | None) -> Iterator[None]:
+    """Write what goes to standard error inside the block to a stream, while that takes it.
+
+    Without a stream it goes nowhere: ``print`` would send it to standard output.
+    """
+    if stream is None:
+        with open(os.devnull, "w", encoding="utf-8") as nowhere, redirect_stderr(nowhere):
+            yield
+        return
+    lenient: Any = _Notes(stream)
+    with redirect_stderr(lenient):
+        yield

@@ -4,6 +4,7 @@ import operator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..physics.kernels import kernel
 
@@ -64,17 +65,38 @@ def _integer(action: Any) -> int | None:
         return None
 
 
+def read_array(actions: Any, space: str) -> NDArray[Any]:
+    """Return actions as an array.
+
+    Args:
+        space: theirs, in words.
+
+    Raises:
+        TypeError: they are none: rows of different lengths, or a tensor that NumPy can't read.
+    """
+    try:
+        return np.asarray(actions)
+    except (RuntimeError, TypeError, ValueError) as error:
+        raise TypeError(f"{actions!r:.200} is not in {space}, and no array: {error}") from error
+
+
+def as_float32(actions: NDArray[Any]) -> NDArray[np.float32]:
+    """Return numbers as the space of continuous actions has them; what is too large is infinite."""
+    with np.errstate(all="ignore"):
+        return actions.astype(np.float32, order="C")
+
+
 def read_box(action: Any) -> tuple[float, float]:
-    """Return the velocity in [-1, 1] and fire (0 or 1) of one continuous action.
+    """Return the velocity in [-1, 1], a float32, and fire (0 or 1) of one continuous action.
 
     Raises:
         TypeError: it is not two numbers.
         ValueError: it has a NaN.
     """
-    array = np.asarray(action)
+    array = read_array(action, BOX)
     if array.shape != (2,) or array.dtype.kind not in "iuf":
         raise TypeError(f"action {action!r} is not in {BOX}: it must be velocity and fire")
-    move, fire = array.tolist()
+    move, fire = (array if array.dtype == np.float32 else as_float32(array)).tolist()
     if move != move or fire != fire:
         raise ValueError(f"action {action!r} is not in {BOX}: it has a NaN")
     return max(-1.0, min(1.0, move)), 1.0 if fire > 0.0 else 0.0
@@ -98,7 +120,7 @@ def decode_actions(actions: Any, table: Any, commands: Any) -> int:
 
 @kernel
 def decode_velocities(actions: Any, commands: Any) -> int:
-    """Write what box actions (float64 [n, 2]) command; return the first NaN's world or -1.
+    """Write what box actions (float32 [n, 2]) command; return the first NaN's world or -1.
 
     What is outside of the bounds counts as at the bound: a float32 is often rounded past it.
 

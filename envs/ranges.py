@@ -35,17 +35,24 @@ from .rules import (
     SPEED_STAGE_MIN,
     UNBREAKABLE,
 )
-from .state import DECISION_LIMIT, DIVING, FLYING, LIFE_LOST, REPEATED_SEED
+from .state import (
+    DECISION_LIMIT,
+    DIVING,
+    FLYING,
+    HIGHEST,
+    LAST_CHANGE,
+    LIFE_LOST,
+    MOST,
+    MOST_ROUNDS,
+    MOST_TICKS,
+    REPEATED_SEED,
+)
 
 Range = tuple[float, float]  # the least and the largest legal number
 
 # Velocities and places come from sums and roots, which are rounded.
 ROUNDING = 1e-9
 
-# Numbers without a bound in the rules: so many leave room for any play, and for sums with them.
-_MANY = 1 << 60
-_MOST_TICKS = 1 << 30  # of 32 bits
-_MOST_ROUNDS = 2 * 10**9  # an episode can begin with round 10**9
 _MOST_EVENTS = 1 << 30  # in one decision
 _MOST_HITS = (UNBREAKABLE - 1) * CELLS + BOSS_HITS  # of a round
 
@@ -59,11 +66,11 @@ _ANY_SEED = (1, (1 << 64) - 1)  # the generator's state is never zero
 
 WORLD_RANGES: dict[str, Range] = {
     "random": _ANY_SEED,
-    "decisions": (0, _MANY),
-    "score": (0, _MANY),
-    "lives": (0, _MANY),
-    "round_number": (1, _MOST_ROUNDS),
-    "brick_changes": (0, _MANY),
+    "decisions": (0, MOST),
+    "score": (0, MOST),
+    "lives": (0, MOST),
+    "round_number": (1, MOST_ROUNDS),
+    "brick_changes": (0, LAST_CHANGE),
     "changed_cells": (0, CELLS - 1),
     "paddle_x": _ACROSS,
     "paddle_vx": _FAST,
@@ -104,7 +111,7 @@ WORLD_RANGES: dict[str, Range] = {
     "brick_hits": (0, UNBREAKABLE),
     "enemy_x": _ACROSS,
     # One that dives at the paddle from below may fly out of the field, and on.
-    "enemy_y": (-1.0 - ROUNDING, 1e6),
+    "enemy_y": (-1.0 - ROUNDING, HIGHEST),
     "enemy_vx": _DIVE,
     "enemy_vy": _DIVE,
     "enemy_course_x": _UNIT,
@@ -126,12 +133,12 @@ WORLD_RANGES: dict[str, Range] = {
     "capsule_y": (-CAPSULE_HEIGHT, FIELD_HEIGHT),
     "ball_offset": (-FIELD_WIDTH, FIELD_WIDTH),
     "ball_caught": _FLAG,
-    "hits_since_serve": (0, _MOST_TICKS),
-    "next_life": (1, _MANY + EXTRA_LIFE_EVERY),
+    "hits_since_serve": (0, MOST_TICKS),
+    "next_life": (1, MOST + EXTRA_LIFE_EVERY),
     "first_random": _ANY_SEED,
-    "first_decision": (0, _MANY),
+    "first_decision": (0, MOST),
     "start": (0, REPEATED_SEED),
-    "capped": (0, _MOST_TICKS),
+    "capped": (0, MOST_TICKS),
     "start_round": (1, 10**9),
     "start_seed": (0, (1 << 63) - 1),
     "start_difficulty": (-1.0, 1.0),
@@ -142,9 +149,9 @@ WORLD_RANGES: dict[str, Range] = {
 
 OUTCOME_RANGES: dict[str, Range] = {
     "reward": (-1e15, 1e15),
-    "score": (0, _MANY),
-    "lives": (0, _MANY),
-    "round_number": (1, _MOST_ROUNDS),
+    "score": (0, MOST),
+    "lives": (0, MOST),
+    "round_number": (1, MOST_ROUNDS),
     "hits": (0, _MOST_EVENTS),
     "bricks_broken": (0, _MOST_EVENTS),
     "lives_gained": (0, _MOST_EVENTS),

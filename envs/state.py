@@ -40,6 +40,15 @@ REPEATED_SEED = 3  # and every further round, too
 # all bricks. It is a power of two.
 MAX_CHANGES = 8
 
+# Where counters stop that the rules leave without a bound. Nobody plays so long, but a state from
+# outside may be there already.
+MOST = 1 << 60  # points, lives
+MOST_TICKS = 1 << 30  # and hits: what is counted in 32 bits
+MOST_ROUNDS = 2 * 10**9  # an episode can begin with round 10**9
+HIGHEST = 1e6  # of an enemy that flies up, out of the field
+# The number of changes of bricks begins anew after this one, in binary all ones.
+LAST_CHANGE = (1 << 53) - 1
+
 _LINE = 64  # bytes
 
 # What kernels take. A type checker can't tell one dtype from another, so the names do.
@@ -81,7 +90,7 @@ World = record_dtype(
         ("score", np.int64),
         ("lives", np.int64),
         ("round_number", np.int64),  # from 1
-        ("brick_changes", np.int64),  # their number, earlier episodes included
+        ("brick_changes", np.int64),  # their number, earlier episodes included, see `LAST_CHANGE`
         ("changed_cells", np.uint8, (MAX_CHANGES,)),  # by change i at i % MAX_CHANGES
         ("paddle_x", np.float64),
         ("paddle_vx", np.float64),  # of the latest tick

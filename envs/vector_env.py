@@ -52,7 +52,7 @@ _MODES = {
     AutoresetMode.NEXT_STEP: Autoreset.NEXT_STEP,
     AutoresetMode.SAME_STEP: Autoreset.SAME_STEP,
 }
-MOST_WORLDS = 1 << 40  # more than any memory holds
+MOST_WORLDS = 1 << 30  # of the largest pictures: more are no size of an array
 
 
 class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], Any]):
@@ -75,6 +75,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
 
     Raises:
         TypeError, ValueError: a keyword is unknown or its value is illegal.
+        MemoryError: there is no room for so many worlds.
     """
 
     spec: Any = SpecWithLimit()
@@ -107,7 +108,10 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             "autoreset_mode": self.autoreset_mode,
         }
         self._mode = _MODES[self.autoreset_mode]
-        self._batch = Batch(num_envs, self.config, self._mode, threads)
+        try:
+            self._batch = Batch(num_envs, self.config, self._mode, threads)
+        except MemoryError as error:
+            raise MemoryError(f"num_envs={num_envs} worlds do not fit into memory") from error
         self.single_observation_space = self._batch.observer.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.single_action_space = action_space(self.config)
@@ -167,7 +171,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             actions: integers [n], or velocity and fire, [n, 2].
 
         Raises:
-            ValueError: they are not in the action space.
+            TypeError, ValueError: they are not in the action space.
             gymnasium.error.ResetNeeded: a world was never reset, or its episode is over and the
                 autoreset mode is ``"Disabled"``.
         """
@@ -322,10 +326,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             TypeError, ValueError: as `restore`.
         """
         seeds = check_seeds(seed, self.num_envs)
-        spread_snapshot(self._batch, snapshot)
-        for index, each in enumerate(seeds):
-            if each is not None:
-                self._batch.seed(index, each)
+        spread_snapshot(self._batch, snapshot, seeds)
         return self._observations(), self._infos(self._batch.outcomes, self._everywhere)
 
     def record(self, world: int = 0) -> "Recorder":

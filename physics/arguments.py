@@ -14,7 +14,10 @@ def _number(name: str, value: Any) -> float:
     # The quick test comes first: most numbers are floats, and NumPy's are, too.
     if not isinstance(value, float) and (not isinstance(value, Real) or isinstance(value, bool)):
         raise TypeError(f"{name} must be a number, but is {value!r}")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:  # of an integer: how many digits it has, nobody knows
+        raise ValueError(f"{name} is too large for a float") from None
 
 
 def integer(name: str, value: Any) -> int:
@@ -25,10 +28,12 @@ def integer(name: str, value: Any) -> int:
 
 
 def whole(name: str, value: Any, at_least: int) -> int:
-    """Return an integer that is not less than ``at_least``."""
+    """Return an integer of 64 bits that is not less than ``at_least``."""
     number = integer(name, value)
     if number < at_least:
         raise ValueError(f"{name} must be at least {at_least}, but is {value!r}")
+    if number >= 1 << 63:
+        raise ValueError(f"{name} must fit into 64 bits")
     return number
 
 

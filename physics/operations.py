@@ -214,6 +214,10 @@ def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
         _check(a)
         _check(b)
         raise
+    except OverflowError:  # of integers
+        _check(a)
+        _check(b)
+        raise ValueError("the positions are too far apart for a float") from None
     if not (math.isfinite(dx) and math.isfinite(dy)):
         raise ValueError(f"positions must be finite, but are ({ax}, {ay}) and ({bx}, {by})")
     return shapes, edges, dx, dy
@@ -250,7 +254,12 @@ def _restitution(item: Any) -> float:
 def _shift(item: Any, distance: float, x: float, y: float) -> None:
     """Move an object along a unit vector."""
     old_x, old_y = item.position
-    _assign("position", item, old_x + distance * x, old_y + distance * y)
+    try:
+        new_x, new_y = old_x + distance * x, old_y + distance * y
+    except OverflowError:  # of integers
+        vector("position", item.position)
+        raise
+    _assign("position", item, new_x, new_y)
 
 
 def _assign(name: str, item: Any, x: float, y: float) -> None:

@@ -84,16 +84,3 @@ def test_figures_are_what_the_engine_draws(tmp_path: Path) -> None:
             np.testing.assert_allclose(
                 new[name], coordinates, rtol=0, atol=MEASURE, err_msg=message
             )
-
-
-def test_every_figure_of_the_readme_was_measured() -> None:
-    """The figures of the README's table stand in the outputs and reports that were kept."""
-    results = [*DOCS.glob("results/*.txt"), *DOCS.glob("results/*.md")]
-    kept = " ".join(path.read_text(encoding="utf-8") for path in results)
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    table = readme.partition("## In figures")[2].partition("\n\n[")[0]
-    cells = [cell for row in table.splitlines() if row for cell in row.split("|")[2:]]
-    number = r"(?<![\w.])\d+(?:,\d{3})*(?:\.\d+)?(?:e-\d+)?(?!\w)"
-    figures = {figure for cell in cells for figure in re.findall(number, cell)}
-    assert len(figures) > 10
-    assert figures - set(re.findall(number, kept)) == set()

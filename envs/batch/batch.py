@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from ...physics.kernels.one_thread import OneThread
 from ...physics.kernels.threads import Threads
-from ..actions import BOX, COMMANDS, decode_actions, decode_velocities
+from ..actions import (
+    BOX,
+    COMMANDS,
+    as_float32,
+    decode_actions,
+    decode_velocities,
+    read_array,
+)
 from ..checks import check_integer
 from ..config import Config
 from ..game.random import seed_state
@@ -183,15 +190,16 @@ class Batch:
     def command(self, actions: Any) -> None:
         """Take actions as the worlds' commands: integers [n], or velocities and fire, [n, 2].
 
-        Velocities beyond -1 and 1 count as -1 and 1.
+        Velocities are rounded to float32, and those beyond -1 and 1 count as -1 and 1.
 
         Raises:
+            TypeError: they are no array.
             ValueError: their number or an integer is illegal, or a velocity is NaN.
         """
-        array = np.asarray(actions)
         if self._table is None:
-            self._command_velocities(array)
+            self._command_velocities(read_array(actions, BOX))
             return
+        array = read_array(actions, f"Discrete({len(self._table)})")
         if array.shape != (self.num_worlds,) or array.dtype.kind not in "iu":
             raise ValueError(
                 f"actions must be {self.num_worlds} integers, one for each world, in "
@@ -209,7 +217,7 @@ class Batch:
                 f"actions must be numbers of shape ({self.num_worlds}, 2), velocity and fire of "
                 f"each world, in {BOX}; got {array.dtype} of shape {array.shape}"
             )
-        wrong = decode_velocities(array.astype(np.float64), self.commands)
+        wrong = decode_velocities(as_float32(array), self.commands)
         if wrong >= 0:
             raise ValueError(
                 f"action {array[wrong].tolist()} of world {wrong} is not in {BOX}: it has a NaN"

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..state import LIFE_LOST
 from .batch import Batch
-from .recorder import NOTE_EVERY, Recorder
-from .replays import Replay, Result
+from .recorder import Recorder
+from .replays import NOTE_EVERY, Replay, Result
 
 
 class ReplayDivergedError(RuntimeError):

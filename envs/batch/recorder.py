@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from ..state import GAME_OVER, World
 from .batch import Batch
-from .replays import GameStart, Replay, Result
+from .replays import NOTE_EVERY, GameStart, Replay, Result
 
-# After this number of decisions, again and again, the checksum runs over the state ...
+# After this number of decisions, again and again, the checksum runs over the state; after
+# `NOTE_EVERY` its value is noted.
 CHECK_EVERY = 16
-# ... and after this number its value is noted.
-NOTE_EVERY = 256
 # What it runs over. These fields are all that a game's course depends on, but for a few counters.
 _CHECKED = (
     "random",

@@ -15,6 +15,7 @@ from ..rules import (
     FIELD_HEIGHT,
     FIELD_WIDTH,
     GOLD,
+    IDLE_TICKS,
     MAX_BALLS,
     MAX_BEAMS,
     MAX_ENEMIES,
@@ -43,7 +44,7 @@ from ..state import (
 # The fields that a fault may be in. Kernels return their places here, for they have no words.
 RELATED = (
     "",  # no fault
-    *("decisions", "first_decision", "lives", "done", "next_life"),
+    *("decisions", "first_decision", "lives", "done", "next_life", "idle"),
     *("paddle_half", "paddle_x", "paddle_vx", "fire", "power"),
     *("ball_state", "ball_x", "ball_y", "ball_vx", "ball_offset"),
     *("brick_hits", "bricks_left", "hits_left", "needed"),
@@ -51,13 +52,13 @@ RELATED = (
     *("enemy_side", "enemy_course_x", "enemy_x", "enemies", "boss_hits", "enemy_wait"),
     *("start_difficulty", "start_boss", "start_kind"),
 )
-_DECISIONS, _FIRST_DECISION, _LIVES, _DONE, _NEXT_LIFE = range(1, 6)
-_PADDLE_HALF, _PADDLE_X, _PADDLE_VX, _FIRE, _POWER = range(6, 11)
-_BALL_STATE, _BALL_X, _BALL_Y, _BALL_VX, _BALL_OFFSET = range(11, 16)
-_BRICK_HITS, _BRICKS_LEFT, _HITS_LEFT, _NEEDED = range(16, 20)
-_BEAM_STATE, _BEAMS, _SHARD_STATE, _SHARD_VX, _SHARDS = range(20, 25)
-_ENEMY_SIDE, _ENEMY_COURSE, _ENEMY_X, _ENEMIES, _BOSS_HITS, _ENEMY_WAIT = range(25, 31)
-_START_DIFFICULTY, _START_BOSS, _START_KIND = range(31, 34)
+_DECISIONS, _FIRST_DECISION, _LIVES, _DONE, _NEXT_LIFE, _IDLE = range(1, 7)
+_PADDLE_HALF, _PADDLE_X, _PADDLE_VX, _FIRE, _POWER = range(7, 12)
+_BALL_STATE, _BALL_X, _BALL_Y, _BALL_VX, _BALL_OFFSET = range(12, 17)
+_BRICK_HITS, _BRICKS_LEFT, _HITS_LEFT, _NEEDED = range(17, 21)
+_BEAM_STATE, _BEAMS, _SHARD_STATE, _SHARD_VX, _SHARDS = range(21, 26)
+_ENEMY_SIDE, _ENEMY_COURSE, _ENEMY_X, _ENEMIES, _BOSS_HITS, _ENEMY_WAIT = range(26, 32)
+_START_DIFFICULTY, _START_BOSS, _START_KIND = range(32, 35)
 
 # An enemy nearer to the paddle's middle than this has no way to it.
 _TOO_NEAR = 1e-6
@@ -97,6 +98,9 @@ def _check_course(world: WorldRecord, rules: RulesRecord, episodic_life: bool) -
         return _FIRST_DECISION
     if world.lives == 0 and not over:
         return _LIVES
+    # So long an idleness costs a life, and the clock starts anew unless it was the last one.
+    if world.idle >= IDLE_TICKS and world.lives > 0:
+        return _IDLE
     if world.done > GAME_OVER and not episodic_life:
         return _DONE
     # The next extra life is ahead, and not further than the rules have it.

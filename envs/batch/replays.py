@@ -30,12 +30,14 @@ from ..config import Config
 from ..levels.plan import LevelPlan, check_layouts
 from ..reading import read_limited
 from ..rules import BRICK_LETTERS, CELLS, RULES_VERSION, TICKS_PER_SECOND
-from ..state import GIVEN_LAYOUT, LevelEntry
+from ..state import GIVEN_LAYOUT, NOT_TRUNCATED, LevelEntry
 from .headers import check_header
 
 _MARK = b"ARKAPLAY"
 _FORMAT = 1
 _LENGTH = struct.Struct("<I")
+# After this number of decisions, again and again, the checksum of the states is noted.
+NOTE_EVERY = 256
 _MOST_COLOURS = 256  # of the palette of commands
 # Files may come from anyone: what they expand to has bounds.
 MOST_DECISIONS = 10_000_000  # a week of play, without a pause
@@ -191,7 +193,7 @@ class Replay:
         """Return the replay of a content; raise ValueError or one of `_ERRORS` if it is none."""
         (length,) = _LENGTH.unpack_from(content)
         text = content[_LENGTH.size :]
-        head = json.loads(_expand(text[:length], _MOST_TEXT))
+        head = _read_json(_expand(text[:length], _MOST_TEXT))
         if not _VERSION.fullmatch(head["version"]) or type(head["rules"]) is not int:
             raise ValueError("the replay is corrupt: it does not say which release recorded it")
         if head["rules"] != RULES_VERSION:
@@ -223,6 +225,7 @@ class Replay:
         """Raise a ValueError for what no player could have done: files may come from anyone."""
         if self.config != self.config.of_the_game():
             raise ValueError("the replay is corrupt: it says how the game is seen; none does")
+        self._check_checksums()
         move, fire = self.commands.T
         illegal = ~((abs(move) <= 1.0) & ((fire == 0.0) | (fire == 1.0)))  # so that NaN is, too
         if illegal.any():
@@ -236,6 +239,26 @@ class Replay:
             raise ValueError("no game has such levels")
         if plan.names:
             check_layouts(plan.table["kind"], plan.table["boss"], self.config.enemies)
+
+    def _check_checksums(self) -> None:
+        """Raise a ValueError unless there are as many checksums as a recorder notes."""
+        result = self.result
+        # The result of a game that is over takes the place of its last state's checksum.
+        over = result.terminated or result.truncation != NOT_TRUNCATED
+        noted = 1 + max(0, result.decisions - over) // NOTE_EVERY
+        if len(self.checksums) != noted + 1:  # and the last one
+            raise ValueError(
+                f"the replay is corrupt: it has {len(self.checksums)} checksums, and a game of "
+                f"{result.decisions} decisions has {noted + 1}"
+            )
+
+
+def _read_json(text: bytes) -> Any:
+    """Return what JSON says."""
+    try:
+        return json.loads(text.decode())
+    except ValueError as error:
+        raise ValueError(f"the replay is corrupt: no JSON in UTF-8: {error}") from error
 
 
 def _check_length(decisions: int) -> None:

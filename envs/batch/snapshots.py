@@ -11,6 +11,7 @@ A snapshot is sealed (`sealed`) with this content:
 
 import json
 import struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -58,11 +59,15 @@ def restore_snapshot(batch: Batch, snapshot: bytes) -> None:
     batch.alone.run(batch.restore, *state)
 
 
-def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
+def spread_snapshot(batch: Batch, snapshot: bytes, seeds: Sequence[int | None]) -> None:
     """Bring every world of a batch into the state of a snapshot of one world.
+
+    Args:
+        seeds: of each world's random numbers from here on; None: those of the snapshot.
 
     Raises:
         TypeError, ValueError: see `_unpack`, or it has several worlds; nothing changes then.
+        RuntimeError: another call is in progress.
     """
     state = _unpack(batch, snapshot)
     if len(state[0]) != 1:
@@ -70,7 +75,14 @@ def spread_snapshot(batch: Batch, snapshot: bytes) -> None:
             f"the snapshot has {len(state[0])} worlds, and spread() takes that of one: of a single "
             "environment, or snapshot(world)"
         )
-    batch.alone.run(batch.restore, *state)
+
+    def spread() -> None:
+        batch.restore(*state)
+        for index, seed in enumerate(seeds):
+            if seed is not None:
+                batch.seed(index, seed)
+
+    batch.alone.run(spread)
 
 
 def _unpack(
@@ -108,7 +120,7 @@ def _unpack(
 def _read_setup(setup: memoryview) -> dict[str, Any]:
     """Return a setup that differs from the expected one, with all of its parts."""
     try:
-        read = json.loads(bytes(setup))
+        read = json.loads(bytes(setup).decode())
         return {"config": dict(read["config"])} | {
             name: read[name] for name in ("rules", "levels", "layout")
         }

@@ -85,19 +85,22 @@ def encode_commands(actions: str, commands: NDArray[np.float64]) -> NDArray[Any]
     """Return commands, velocity and fire [n, 2], as actions: int64 [n], or float32 [n, 2].
 
     Raises:
-        ValueError: one of them is none of the discrete actions.
+        ValueError: one of them is none of the actions.
     """
+    encoded: NDArray[Any]
     if actions == "box":
-        return commands.astype(np.float32)
-    if not isinstance(actions, str) or actions not in COMMANDS:
+        encoded = commands.astype(np.float32)
+        found = (encoded == commands).all(axis=1)
+    elif isinstance(actions, str) and actions in COMMANDS:
+        same = (commands[:, np.newaxis] == COMMANDS[actions]).all(axis=2)
+        encoded, found = same.argmax(axis=1), same.any(axis=1)
+    else:
         raise ValueError(f"actions must be box or one of {', '.join(COMMANDS)}; got {actions!r}")
-    same = (commands[:, np.newaxis] == COMMANDS[actions]).all(axis=2)
-    found = same.any(axis=1)
     if not found.all():
         decision = int(found.argmin())
+        reason = "they are no float32" if actions == "box" else "use actions='box'"
         raise ValueError(
             f"{actions!r} has no action for velocity and fire {commands[decision].tolist()} of "
-            f"decision {decision}: use actions='box'"
+            f"decision {decision}: {reason}"
         )
-    encoded: NDArray[np.int64] = same.argmax(axis=1)
     return encoded

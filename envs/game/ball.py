@@ -17,7 +17,7 @@ from ..rules import (
     ZONE_ANGLES,
     ZONES6,
 )
-from ..state import RulesRecord, WorldRecord
+from ..state import MOST_TICKS, RulesRecord, WorldRecord
 from .random import random_sign, uniform_between
 
 _FLAT = int(FLAT_ANGLE)
@@ -57,7 +57,7 @@ def set_course(world: WorldRecord, rules: RulesRecord, ball: int, x: float, y: f
 @inlined
 def count_hit(world: WorldRecord) -> None:
     """Count a ball's hit on a brick; after certain numbers of hits all balls fly faster."""
-    world.hits_since_serve += 1
+    world.hits_since_serve = min(world.hits_since_serve + 1, MOST_TICKS)
     for index in range(len(SPEED_STAGE_HITS)):
         if world.hits_since_serve == SPEED_STAGE_HITS[index]:
             world.speed_stage = min(world.speed_stage + 1, SPEED_STAGE_MAX)

@@ -11,7 +11,7 @@ from ..rules import (
     SILVER_POINTS,
     UNBREAKABLE,
 )
-from ..state import MAX_CHANGES, RulesRecord, WorldRecord
+from ..state import LAST_CHANGE, MAX_CHANGES, RulesRecord, WorldRecord
 from .capsules import drop_capsule
 from .scoring import add_score, count_damage
 
@@ -29,6 +29,12 @@ def hits_needed(kind: int, round_number: int) -> int:
 
 
 @inlined
+def _count_changes(world: WorldRecord, changes: int) -> None:
+    """Count changes of bricks, for those who show them."""
+    world.brick_changes = (world.brick_changes + changes) & LAST_CHANGE
+
+
+@inlined
 def lay_bricks(world: WorldRecord) -> None:
     """Lay all bricks of the world's layout, and count the hits that they need."""
     world.needed = 0
@@ -40,7 +46,7 @@ def lay_bricks(world: WorldRecord) -> None:
             world.needed += hits
             world.bricks_left += 1
     world.hits_left = world.needed
-    world.brick_changes += MAX_CHANGES + 1  # all bricks: more than are remembered
+    _count_changes(world, MAX_CHANGES + 1)  # all bricks: more than are remembered
 
 
 @inner
@@ -49,7 +55,7 @@ def hit_brick(world: WorldRecord, rules: RulesRecord, cell: int) -> bool:
     if world.brick_hits[cell] == UNBREAKABLE:
         return False
     world.brick_hits[cell] -= 1
-    world.brick_changes += 1
+    _count_changes(world, 1)
     world.changed_cells[world.brick_changes % MAX_CHANGES] = cell
     count_damage(world)
     if world.brick_hits[cell] == 0:

@@ -30,7 +30,16 @@ from ..rules import (
     MAX_ENEMIES,
     PADDLE_Y,
 )
-from ..state import ABSENT, CIRCLING, DIVING, DRIFTING, ENTERING, RulesRecord, WorldRecord
+from ..state import (
+    ABSENT,
+    CIRCLING,
+    DIVING,
+    DRIFTING,
+    ENTERING,
+    HIGHEST,
+    RulesRecord,
+    WorldRecord,
+)
 from .random import random_sign, uniform, uniform_between
 from .scoring import add_score
 from .shapes import BRICK_SHAPE, CEILING_SHAPE, ENEMY_SHAPE, LEFT_WALL_SHAPE, RIGHT_WALL_SHAPE
@@ -157,7 +166,7 @@ def _fly(world: WorldRecord, rules: RulesRecord, enemy: int) -> None:
     x, y = world.enemy_course_x[enemy], world.enemy_course_y[enemy]
     speed = DIVE_SPEED
     if world.enemy_state[enemy] == CIRCLING:
-        world.enemy_clock[enemy] += 1
+        world.enemy_clock[enemy] = min(world.enemy_clock[enemy] + 1, CIRCLE_TICKS)
         speed = CIRCLE_SPEED
         if world.enemy_clock[enemy] < CIRCLE_TICKS:
             sine = rules.circle_sine * world.enemy_side[enemy]
@@ -301,6 +310,6 @@ def move_enemies(world: WorldRecord, rules: RulesRecord) -> None:
             destroy_enemy(world, enemy)
             continue
         world.enemy_x[enemy] += world.enemy_vx[enemy]
-        world.enemy_y[enemy] += world.enemy_vy[enemy]
+        world.enemy_y[enemy] = min(world.enemy_y[enemy] + world.enemy_vy[enemy], HIGHEST)
         if world.enemy_y[enemy] < BELOW:
             remove_enemy(world, enemy)

@@ -17,7 +17,7 @@ from ..rules import (
     PADDLE_TOP,
     PADDLE_Y,
 )
-from ..state import FLYING, HELD, RulesRecord, WorldRecord, Worlds
+from ..state import FLYING, HELD, MOST_TICKS, RulesRecord, WorldRecord, Worlds
 from .ball import bounce_ball, count_hit, deflect_ball
 from .boss import hit_boss, meet_boss
 from .bricks import hit_brick
@@ -164,7 +164,7 @@ def fly_ball(world: WorldRecord, rules: RulesRecord, ball: int) -> None:
         bounce_ball(world, rules, ball, normal_x, normal_y, damaged)
         if world.cleared == 1:
             return
-    world.capped += 1
+    world.capped = min(world.capped + 1, MOST_TICKS)
 
 
 @inlined

@@ -11,6 +11,7 @@ from ..rules import (
 from ..state import (
     DECISION_LIMIT,
     FLYING,
+    MOST_ROUNDS,
     NOT_TRUNCATED,
     Levels,
     OutcomeRecord,
@@ -93,7 +94,7 @@ def _reward_tick(
         outcome.terminated = True
     if world.cleared == 1:
         world.rounds_cleared += 1
-        world.round_number += 1
+        world.round_number = min(world.round_number + 1, MOST_ROUNDS)
         begin_round(world, rules, levels)
 
 

@@ -12,6 +12,7 @@ A file begins with headings:
 heading ``boss: yes`` brings the boss. A level that nobody can clear is refused.
 """
 
+import errno
 from dataclasses import dataclass
 from difflib import get_close_matches
 from importlib import resources
@@ -26,6 +27,7 @@ from .clearability import unreachable_bricks
 
 _PACKAGED = f"{__package__}.named"
 _MOST_BYTES = 1 << 20  # of a file
+_SHOWN = 200  # letters of a wrong name, in an error
 
 # The named levels in the order in which the campaign plays them; the boss is in the last one.
 CAMPAIGN: tuple[str, ...] = (
@@ -79,11 +81,12 @@ def load_level(name_or_path: str) -> Level:
         text = (resources.files(_PACKAGED) / f"{name_or_path}.txt").read_text("utf-8")
         return parse_level(text, f"{name_or_path}.txt")
     path = Path(name_or_path)
-    if not path.is_file():
-        near = get_close_matches(name_or_path, level_names(), 1)
+    if not _is_file(path):
+        name = name_or_path if len(name_or_path) <= _SHOWN else f"{name_or_path[:_SHOWN]}..."
+        near = get_close_matches(name, level_names(), 1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         raise ValueError(
-            f"no level {name_or_path!r}: it is neither a file nor one of the packaged levels "
+            f"no level {name!r}: it is neither a file nor one of the packaged levels "
             f"({', '.join(level_names())}).{hint}"
         )
     try:
@@ -94,6 +97,16 @@ def load_level(name_or_path: str) -> Level:
     except ValueError as error:
         raise ValueError(f"{name_or_path}: not a level: {error}") from None
     return parse_level(text, name_or_path)
+
+
+def _is_file(path: Path) -> bool:
+    """Tell whether there is a file; none has a name that is too long for the system."""
+    try:
+        return path.is_file()
+    except OSError as error:
+        if error.errno != errno.ENAMETOOLONG:
+            raise
+        return False
 
 
 def parse_level(text: str, source: str) -> Level:

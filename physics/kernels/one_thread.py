@@ -2,10 +2,12 @@
 
 import os
 from collections.abc import Callable
+from functools import wraps
 from typing import Any, NoReturn, TypeVar
 from weakref import WeakSet
 
 R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., Any])
 
 
 class OneThread:
@@ -35,7 +37,7 @@ class OneThread:
             f"another call is using {self._what}: it belongs to one thread at a time"
         )
 
-    def run(self, function: Callable[..., R], *arguments: Any) -> R:
+    def run(self, function: Callable[..., R], *arguments: Any, **keywords: Any) -> R:
         """Call a function while all other calls are refused.
 
         Raises:
@@ -45,9 +47,19 @@ class OneThread:
             self.refuse()
         self.taken = True
         try:
-            return function(*arguments)
+            return function(*arguments, **keywords)
         finally:
             self.taken = False
+
+
+def alone(method: F) -> F:
+    """Let a method be refused while another call uses its object, whose guard is ``_alone``."""
+
+    @wraps(method)
+    def guarded(self: Any, *arguments: Any, **keywords: Any) -> Any:
+        return self._alone.run(method, self, *arguments, **keywords)
+
+    return guarded  # type: ignore[return-value]
 
 
 _all: "WeakSet[OneThread]" = WeakSet()

@@ -39,10 +39,8 @@ class WorldBatch:
     def __init__(self, world: World, num_worlds: int, *, threads: int = 1) -> None:
         count = whole("num_worlds", num_worlds, at_least=1)
         parts = min(count, whole("threads", threads, at_least=1))
-        built = world.built()
-        setup = built.setup
+        setup, self._states = world.copies(count)
         self._setup = setup
-        self._states = np.repeat(built.states, count, axis=0)
         self.moving = setup.moving
         motions = setup.motion_view(self._states)
         self.positions: FloatArray = motions[:, :, :2]

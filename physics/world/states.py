@@ -102,7 +102,7 @@ class Stepper:
 
 def checked_step(dt: Any, steps: Any) -> tuple[float, int]:
     """Check the length of a step and the number of steps, and return them."""
-    if type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps > 0:
+    if type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and 0 < steps < 1 << 63:
         return dt, steps
     return not_negative("dt", dt), whole("steps", steps, at_least=1)
 

@@ -11,12 +11,12 @@ import numpy.typing as npt
 from ..arguments import finite, integer, inverse_mass, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..errors import HitLimitWarning
-from ..kernels.one_thread import OneThread
+from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
 from ..shapes.colliders import AxisAlignedRectangle, Collider, Particle
 from .forms import Built, Scene
 from .queries import find_first, find_overlapping
-from .setup import BodySpec, with_query
+from .setup import BodySpec, ByteArray, Setup, with_query
 from .states import checked_step, pack_states, unpack_states
 
 IndexArray = npt.NDArray[np.int64]
@@ -51,8 +51,8 @@ class World:
     no body tunnels through another at any speed, and no time is lost. Relaxation is for bodies that
     overlap when a step begins.
 
-    A world belongs to one thread at a time: `step`, `snapshot` and `restore` raise a RuntimeError
-    while another call of them is in progress.
+    A world belongs to one thread at a time: while a method is running, each other one raises a
+    RuntimeError.
 
     Args:
         bodies: added in this order, see `add`.
@@ -74,6 +74,7 @@ class World:
         for body in bodies:
             self.add(body)
 
+    @alone
     def add(
         self, body: Collidable, *, category: int = 1, mask: int = ALL, sensor: bool = False
     ) -> int:
@@ -107,15 +108,18 @@ class World:
         scene.motions.append([*position, *velocity])
         return len(scene.specs) - 1
 
+    @alone
     def remove(self, index: int) -> None:
         """Remove a body. The indices of later ones go down by one."""
         checked = self._index(index)
         self._edit().remove(checked)
 
+    @alone
     def body(self, index: int) -> Body:
         """Return a body as it is now; changing it does not change the world."""
         return self._scene.body(self._index(index), self._all_motions())
 
+    @alone
     def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
         """Put a body somewhere, give it another velocity, or both.
 
@@ -137,6 +141,7 @@ class World:
         if position is not None:
             (self._built or self._scene).forget_inside(body)
 
+    @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:
         """Give a pair its own restitution, or again the product of its bodies' values (None)."""
         first, second = sorted((self._index(a), self._index(b)))
@@ -153,11 +158,13 @@ class World:
         return len(self._scene.specs)
 
     @property
+    @alone
     def positions(self) -> FloatArray:
         """The positions of all bodies: float64 [n, 2], a read-only copy (see `place`)."""
         return self._columns(slice(0, 2))
 
     @property
+    @alone
     def velocities(self) -> FloatArray:
         """The velocities of all bodies: float64 [n, 2], a read-only copy (see `place`)."""
         return self._columns(slice(2, 4))
@@ -188,15 +195,15 @@ class World:
             RuntimeError: another call is in progress.
         """
         length, count = checked_step(dt, steps)
-        alone = self._alone
-        if alone.taken:
-            alone.refuse()
-        alone.taken = True
+        guard = self._alone
+        if guard.taken:
+            guard.refuse()
+        guard.taken = True
         try:
             built = self._built or self.built()  # most steps save a call
             hits = built.stepper.step(length, count)
         finally:
-            alone.taken = False
+            guard.taken = False
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
@@ -208,10 +215,12 @@ class World:
             )
         return hits
 
+    @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that contain a point."""
         return self._overlapping(Particle(0.0), vector("point", point), mask)
 
+    @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that overlap a box, given by two of its corners."""
         low, high = vector("lower", lower), vector("upper", upper)
@@ -222,6 +231,7 @@ class World:
             AxisAlignedRectangle(high[0] - low[0], high[1] - low[1]), middle, mask
         )
 
+    @alone
     def query_ray(
         self, start: Any, end: Any, radius: float = 0.0, mask: int = ALL
     ) -> RayHit | None:
@@ -244,11 +254,13 @@ class World:
         point = np.add((x, y), fraction * way)
         return RayHit(int(index), float(fraction), point, np.array((-normal_x, -normal_y)))
 
+    @alone
     def snapshot(self) -> bytes:
         """Return all that changes as the world is stepped, as bytes for `restore`."""
         built = self.built()
-        return self._alone.run(pack_states, built.states, built.setup)
+        return pack_states(built.states, built.setup)
 
+    @alone
     def restore(self, snapshot: bytes) -> None:
         """Go back to a snapshot of this world, or of one with the same bodies.
 
@@ -256,8 +268,14 @@ class World:
             ValueError: if it is corrupt, or of another world. This world does not change then.
         """
         built = self.built()
-        self._alone.run(unpack_states, snapshot, built.states, built.setup)
+        unpack_states(snapshot, built.states, built.setup)
         built.warned = built.capped
+
+    @alone
+    def copies(self, count: int) -> tuple[Setup, ByteArray]:
+        """Return what does not change as the world is stepped, and copies of what does."""
+        built = self.built()
+        return built.setup, np.repeat(built.states, count, axis=0)
 
     def built(self) -> Built:
         """Return the form of the world that kernels step; it is built if need be."""

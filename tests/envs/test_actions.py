@@ -1,8 +1,10 @@
 """The forms of actions: what is taken, what is clipped, what is refused and in which words."""
 
+import re
+
 import numpy as np
 import pytest
-from arkanoid.envs import ArkanoidEnv
+from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
 from arkanoid.envs.actions import COMMANDS, action_meanings
 from gymnasium.wrappers import RescaleAction
 
@@ -65,17 +67,38 @@ def test_what_is_not_velocity_and_fire_is_refused_and_the_space_named(action):
         env.step(action)
 
 
+def test_what_is_no_array_is_refused_and_the_space_named():
+    """Torch and NumPy said what they could not do, and nobody what was wanted."""
+    torch = pytest.importorskip("torch")
+    ragged = [[[0], [1, 2]], [[0, 0], [1]]]
+    tensor = torch.zeros(2, requires_grad=True)
+    box, words = "Box(-1.0, 1.0, (2,), float32)", "Discrete(6)"
+    for env, wrong, space in (
+        (ArkanoidEnv(actions="box"), [*ragged, tensor], box),
+        (ArkanoidEnv(), [*ragged, tensor], words),
+        (ArkanoidVectorEnv(2, actions="box"), [*ragged, tensor.expand(2, 2)], box),
+        (ArkanoidVectorEnv(2), [*ragged, tensor], words),
+    ):
+        env.reset(seed=0)
+        before = env.snapshot()
+        for action in wrong:
+            with pytest.raises(TypeError, match=rf"is not in {re.escape(space)}"):
+                env.step(action)
+        assert env.snapshot() == before
+
+
 @pytest.mark.parametrize(
     ("beyond", "at"),
     [
         ([1.5, 2.0], [1.0, 1.0]),
         ([-np.inf, -3.0], [-1.0, -1.0]),
+        ([1e300, -1e300], [1.0, -1.0]),
         ([np.nextafter(np.float32(1), np.float32(2)), 0.5], [1.0, 1.0]),
     ],
 )
 def test_velocities_beyond_the_bounds_count_as_at_them(beyond, at):
     env = ArkanoidEnv(actions="box")
-    assert observed(env, np.array(beyond, np.float32)) == observed(env, np.array(at, np.float32))
+    assert observed(env, np.array(beyond)) == observed(env, np.array(at, np.float32))
 
 
 def test_rescaled_actions_are_never_refused():

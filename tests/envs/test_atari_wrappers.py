@@ -63,6 +63,34 @@ def test_the_emulators_pictures_are_the_environments():
     assert np.array_equal(grey.ale.getScreenRGB(), in_colours)
 
 
+READ_ONLY = np.empty((4, 4, 3), np.uint8)
+READ_ONLY.flags.writeable = False
+
+
+@pytest.mark.parametrize(
+    ("colours", "buffer", "error"),
+    [
+        (True, np.empty((40, 30), np.uint8), ValueError),
+        (True, np.empty((40, 30, 1), np.uint8), ValueError),
+        (True, np.empty((0, 30, 3), np.uint8), ValueError),
+        (True, np.empty(40, np.uint8), ValueError),
+        (True, np.empty((5000, 1, 3), np.uint8), ValueError),
+        (True, np.empty((40, 30, 3)), TypeError),
+        (True, [[0]], TypeError),
+        (True, READ_ONLY, ValueError),
+        (False, np.empty((40, 30, 3), np.uint8), ValueError),
+        (False, b"", TypeError),
+    ],
+)
+def test_a_buffer_that_takes_no_picture_is_refused(colours, buffer, error):
+    """NumPy's words spoke of shapes that could not be broadcast, or of division by zero."""
+    env = ArkanoidEnv()
+    env.reset(seed=0)
+    show = env.ale.getScreenRGB if colours else env.ale.getScreenGrayscale
+    with pytest.raises(error, match=r"the buffer must be a writable array of uint8, \[height, wi"):
+        show(buffer)
+
+
 def test_lives_are_those_of_info():
     env = ArkanoidEnv(lives=2)
     _, info = env.reset(seed=0)

@@ -3,6 +3,7 @@
 import math
 import pickle
 from dataclasses import dataclass, field
+from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,7 @@ from arkanoid.physics import (
     Body,
     Collidable,
     Collider,
+    Contact,
     Convex,
     Dynamic,
     HalfPlane,
@@ -217,6 +219,39 @@ def test_bad_values_are_refused() -> None:
     heavy = SimpleNamespace(collider=Particle(1), position=(0, 0), mass=1)
     with pytest.raises(TypeError, match="needs a velocity"):
         bounce(heavy, body, (1, 0))
+
+
+HUGE = 10**400
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda far, near: detect(far, near), r"position\[0\] is too large for a float"),
+        (lambda far, near: contact(near, far), r"position\[0\] is too large for a float"),
+        (
+            lambda far, near: relax(far, near, Contact(np.array([1.0, 0.0]), 1.0, np.zeros(2))),
+            r"position\[0\] is too large for a float",
+        ),
+        (lambda far, near: bounce(near, far, (HUGE, 0)), r"normal\[0\] is too large for a float"),
+        (lambda far, near: bounce(near, far, (1, 0), HUGE), "restitution is too large for a float"),
+        (lambda far, near: time_of_impact(near, near, HUGE), "duration is too large for a float"),
+        (lambda far, near: Particle(HUGE), "radius is too large for a float"),
+        (lambda far, near: Body(Particle(1), mass=Fraction(HUGE)), "mass is too large for a float"),
+        (
+            lambda far, near: detect(
+                SimpleNamespace(collider=Particle(1), position=(10**308, 0)),
+                SimpleNamespace(collider=Particle(1), position=(-(10**308), 0)),
+            ),
+            "the positions are too far apart for a float",
+        ),
+    ],
+)
+def test_integers_too_large_for_a_float_are_refused_by_name(call: Any, words: str) -> None:
+    """There was an OverflowError that named nothing: int too large to convert to float."""
+    far = SimpleNamespace(collider=Particle(1), position=(HUGE, 0), mass=1)
+    with pytest.raises(ValueError, match=words):
+        call(far, Body(Particle(1), mass=1))
 
 
 def test_a_body_checks_and_copies_what_it_is_given() -> None:

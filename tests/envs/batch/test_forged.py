@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv, Replay, atomic
-from arkanoid.envs.batch.replays import MOST_DECISIONS
+from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv, Replay, atomic, play_replay
+from arkanoid.envs.batch.replays import MOST_DECISIONS, NOTE_EVERY
 from arkanoid.envs.draw.png import write_png
 from arkanoid.envs.levels.files import parse_level
 from arkanoid.envs.observe.planes import MAX_MARKS
@@ -202,14 +202,14 @@ def test_a_hundred_thousand_forged_replays_do_no_harm(seed):
     )
 
 
-def rewritten(edit, commands=None):
+def rewritten(edit, commands=None, encode=str.encode):
     """Return the golden replay with another JSON, which `edit` changes in place."""
     replay = GOLDEN.read_bytes()
     content = bytes(opened(replay))
     (length,) = struct.unpack_from("<I", content)
     head = json.loads(zlib.decompress(content[4 : 4 + length]))
     edit(head)
-    text = zlib.compress(json.dumps(head).encode())
+    text = zlib.compress(encode(json.dumps(head)))
     packed = content[4 + length :] if commands is None else commands
     return sealed_again(replay, struct.pack("<I", len(text)) + text + packed)
 
@@ -233,11 +233,46 @@ def rewritten(edit, commands=None):
         (lambda head: head["levels"]["bricks"].__setitem__(0, "X" * 198), "nothing to hit"),
         (lambda head: head["levels"].update(first_difficulty=float("nan")), "first_difficulty"),
         (lambda head: head["levels"].update(names=["Ripple"]), "no game has such levels"),
+        # They were said to begin differently.
+        (lambda head: head.update(checksums=[]), "it has 0 checksums, and a game of"),
+        (lambda head: head["checksums"].pop(), "corrupt: it has .* checksums"),
+        (lambda head: head["checksums"].append(0), "corrupt: it has .* checksums"),
     ],
 )
 def test_what_is_no_replay_is_a_value_error(edit, said):
     with pytest.raises(ValueError, match=said):
         Replay.from_bytes(rewritten(edit))
+
+
+@pytest.mark.parametrize(
+    "encode",
+    [
+        lambda text: text.encode().replace(b'"version": "', b'"version": "\xff'),
+        lambda text: text.encode("utf-16"),
+        lambda text: text.encode("utf-16-le"),
+        lambda text: text.encode("utf-32"),
+        lambda text: text.encode("utf-8-sig"),
+        lambda text: text[:-1].encode(),
+        lambda text: b"",
+    ],
+)
+def test_a_replays_json_is_in_utf_8(encode):
+    """Of other letters there was a UnicodeDecodeError, and JSON in UTF-16 was taken."""
+    with pytest.raises(ValueError, match="the replay is corrupt: ") as caught:
+        Replay.from_bytes(rewritten(lambda head: None, encode=encode))
+    assert type(caught.value) is ValueError
+
+
+def test_a_replay_has_the_checksums_of_its_decisions():
+    """A game that is over has none of its last state, whose place the result takes."""
+    for count in (0, 1, NOTE_EVERY - 1, NOTE_EVERY, NOTE_EVERY + 1, 2 * NOTE_EVERY):
+        for limit in (max(1, count), 10_000):
+            env = ArkanoidEnv(lives=1000, max_decisions=limit)
+            recorder = env.record()
+            env.reset(seed=0)
+            for _ in range(count):
+                env.step(0)
+            play_replay(Replay.from_bytes(recorder.replay().to_bytes()))
 
 
 OTHERS = [

@@ -16,7 +16,7 @@ from arkanoid.envs import (
 )
 from arkanoid.envs.batch import replays
 from arkanoid.envs.batch.playback import replay_states
-from arkanoid.envs.batch.recorder import NOTE_EVERY
+from arkanoid.envs.batch.replays import NOTE_EVERY
 from gymnasium.error import ResetNeeded
 from helpers.interrupts import interrupted_at
 from helpers.processes import INTERPRETED, run_program

@@ -310,8 +310,8 @@ def test_snapshots_of_other_versions_are_refused(monkeypatch):
     snapshot = env.snapshot()
     with pytest.raises(ValueError, match="is of format 2, and this release reads format 1"):
         env.restore(snapshot[:8] + b"\x02\x00" + snapshot[10:])
-    rules = snapshot.index(b'"rules": 2') - 22 + len(b'"rules": ')
-    with pytest.raises(ValueError, match=r"version 7, and this release plays version 2"):
+    rules = snapshot.index(b'"rules": 3') - 22 + len(b'"rules": ')
+    with pytest.raises(ValueError, match=r"version 7, and this release plays version 3"):
         env.restore(changed(snapshot, rules, ord("7")))
     layout = snapshot.index(b'"layout": "') - 22 + len(b'"layout": "')
     with pytest.raises(ValueError, match="another release"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv, ReplayDivergedError, replay_transitions
 from arkanoid.envs.state import INFO_FIELDS
+from helpers.states import portable_bytes
 
 VIEWS = [
     {},
@@ -165,3 +166,39 @@ def test_a_game_that_takes_another_course_is_noticed():
     object.__setattr__(replay, "commands", commands)
     with pytest.raises(ReplayDivergedError):
         list(replay_transitions(replay))
+
+
+@pytest.mark.parametrize("vector", [False, True])
+@pytest.mark.parametrize("form", [np.float64, np.float16, np.longdouble])
+def test_continuous_actions_are_played_recorded_and_yielded_as_one_number(vector, form):
+    """A step played 0.3 with 64 bits, and the transition had it with 32: another action."""
+    actions = np.random.default_rng(0).uniform(-1.1, 1.1, (40, 2)).astype(form)
+    actions[:3, 1] = 1e-60, -1e-60, 1.0  # the first one is no float32 above 0
+    env = ArkanoidVectorEnv(1, actions="box") if vector else ArkanoidEnv(actions="box")
+    plain = ArkanoidEnv(actions="box")
+    recorder = env.record()
+    env.reset(seed=0)
+    plain.reset(seed=0)
+    for action in actions:
+        env.step(action[np.newaxis] if vector else action)
+        plain.step(action.astype(np.float32))
+        state = env.state[0] if vector else env.state
+        assert state.tobytes() == plain.state.tobytes()
+    transitions = list(replay_transitions(recorder.replay()))
+    env.reset(seed=0)
+    for transition in transitions:
+        env.step(transition.action[np.newaxis] if vector else transition.action)
+    assert portable_bytes(env.state[0] if vector else env.state) == portable_bytes(plain.state)
+    velocities = np.array([each.action[0] for each in transitions])
+    assert velocities.dtype == np.float32
+    assert (velocities == np.clip(actions[:, 0].astype(np.float32), -1, 1)).all()
+
+
+def test_velocities_that_are_no_float32_are_no_continuous_actions():
+    """Their transitions had another action than was played."""
+    replay, _ = played({}, "box", max_decisions=5)
+    commands = replay.commands.copy()
+    commands[2, 0] = 0.3
+    object.__setattr__(replay, "commands", commands)
+    with pytest.raises(ValueError, match=r"'box' has no action .*0\.3,.* decision 2: .*float32"):
+        replay_transitions(replay)

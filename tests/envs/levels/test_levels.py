@@ -7,6 +7,7 @@ from pathlib import Path
 import imageio.v3 as iio
 import numpy as np
 import pytest
+from arkanoid.envs import ArkanoidEnv
 from arkanoid.envs.levels import (
     CAMPAIGN,
     level_names,
@@ -122,6 +123,21 @@ def test_a_missing_level_names_those_there_are():
         load_level("no-such-level")
     with pytest.raises(ValueError, match="Did you mean 'nested_rings'"):
         load_level("nested-rings")
+
+
+@pytest.mark.parametrize("name", ["a" * 300, "a" * 5000, "b/" + "a" * 300])
+def test_a_name_too_long_for_a_file_is_no_level(name):
+    """The system's error came through: [Errno 36] File name too long."""
+    env = ArkanoidEnv()
+    for call in (
+        lambda: load_level(name),
+        lambda: ArkanoidEnv(levels=name),
+        lambda: ArkanoidEnv(levels=["ripple", name]),
+        lambda: env.reset(options={"level": name}),
+    ):
+        with pytest.raises(ValueError, match=r"no level '.*a\.\.\.': it is neither") as caught:
+            call()
+        assert len(str(caught.value)) < 600
 
 
 def test_reach_agrees_with_labelled_regions():

@@ -16,6 +16,7 @@ from arkanoid.physics import (
 from helpers.bodies import DISC, FLOOR, Fog
 
 NAN, INF = math.nan, math.inf
+HUGE = 10**5000
 
 
 TWO = [FLOOR, Body(DISC, (0, 2), (0, 1), mass=1)]
@@ -42,6 +43,13 @@ WRONG: list[tuple[str, Any, type[Exception], str]] = [
     ("pair", lambda w: w.set_restitution(1, 1, 0.5), ValueError, "two bodies, but both are 1"),
     ("pair", lambda w: w.set_restitution(0, 1, -0.5), ValueError, "restitution.*negative.*-0.5"),
     ("pair", lambda w: w.set_restitution(0, 2, 0.5), IndexError, "no body 2"),
+    ("place", lambda w: w.place(1, (0, HUGE)), ValueError, r"position\[1\] is too large"),
+    ("mass", lambda w: w.add(Fog(DISC, (-HUGE, 0))), ValueError, r"position\[0\] is too large"),
+    ("pair", lambda w: w.set_restitution(0, 1, HUGE), ValueError, "restitution is too large"),
+    ("ray", lambda w: w.query_ray((0, 0), (0, HUGE)), ValueError, r"end\[1\] is too large"),
+    ("dt", lambda w: w.step(HUGE), ValueError, "dt is too large for a float"),
+    ("steps", lambda w: w.step(1.0, HUGE), ValueError, "steps must fit into 64 bits"),
+    ("max_hits", lambda _: World(max_hits=HUGE), ValueError, "max_hits must fit into 64 bits"),
     ("dt", lambda w: w.step(-0.1), ValueError, "dt must not be negative.*-0.1"),
     ("dt", lambda w: w.step(NAN), ValueError, "dt must be finite.*nan"),
     ("dt", lambda w: w.step(INF), ValueError, "dt must be finite.*inf"),

@@ -1,6 +1,8 @@
 """A world or a batch belongs to one thread at a time."""
 
+import copy
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -46,6 +48,53 @@ def test_a_second_thread_is_refused_while_a_step_runs(
     assert world.positions.reshape(-1, 2)[0, 0] == 1.0
     world.restore(snapshot)
     assert world.positions.reshape(-1, 2)[0, 0] == 0.0
+
+
+def test_questions_and_edits_are_refused_while_a_step_runs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An edit gave up what the step wrote, and a question used the same memory."""
+    world = make_world()
+    world.add(Body(Particle(1.0), (9.0, 0.0)))
+    calls: list[Callable[[], Any]] = [
+        lambda: world.add(Body(Particle(1.0))),
+        lambda: world.remove(0),
+        lambda: world.body(0),
+        lambda: world.place(0, (5.0, 5.0)),
+        lambda: world.place(1, position=(5.0, 5.0)),
+        lambda: world.set_restitution(0, 1, 0.5),
+        lambda: world.query_point((0.0, 0.0)),
+        lambda: world.query_box((0.0, 0.0), (1.0, 1.0)),
+        lambda: world.query_ray((0.0, 0.0), (1.0, 1.0)),
+        lambda: world.positions,
+        lambda: world.velocities,
+        lambda: WorldBatch(world, 2),
+        lambda: copy.deepcopy(world),
+    ]
+    errors: list[str] = []
+
+    def attempt(call: Any) -> None:
+        with pytest.raises(RuntimeError) as caught:
+            call()
+        errors.append(str(caught.value))
+
+    plain = Stepper.step
+
+    def meddle(stepper: Stepper, dt: float, steps: int) -> Any:
+        for call in calls:
+            thread = threading.Thread(target=attempt, args=(call,))
+            thread.start()
+            thread.join()
+        return plain(stepper, dt, steps)
+
+    monkeypatch.setattr(Stepper, "step", meddle)
+    world.step(1.0)
+    monkeypatch.undo()
+    assert len(errors) == len(calls)
+    assert all("one thread at a time" in error for error in errors)
+    assert world.positions.tolist() == [[1.0, 0.0], [9.0, 0.0]]
+    for call in calls:
+        call()
 
 
 def test_a_step_that_fails_leaves_the_world_free() -> None:
