@@ -10,6 +10,10 @@ __all__ = ["__version__"]
 
 # A test runner may import this file again under its folder's name; only the package registers.
 if __name__ == "arkanoid":
+    from .agents.interrupts import end_at_interrupt, is_command
+
+    if is_command():
+        end_at_interrupt()
     from .envs.registration import register_environments
 
     register_environments()

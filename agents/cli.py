@@ -17,7 +17,8 @@ from gymnasium.error import DependencyNotInstalled
 from .. import __version__
 from .experiment.errors import SettingsError
 from .experiment.files import cause, printable
-from .output import OutputError, checked_output, notes
+from .interrupts import INTERRUPTED, noted_interrupts
+from .output import OutputError, checked_output, harmless_notes
 
 # Each subcommand, which is its module's name, and what it does.
 COMMANDS = {
@@ -70,18 +71,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     0: done; 1: an extra is missing, a replay plays another game than was recorded, or the reader
     of the output has ended; 2: the user's mistake, or the output cannot be written; 130: Ctrl-C.
     """
-    with notes(sys.stderr):
+    with harmless_notes(sys.stderr), noted_interrupts() as interrupts:
         try:
             with checked_output(sys.stdout):
                 return _try(list(sys.argv[1:] if argv is None else argv))
+        except KeyboardInterrupt:
+            return _fail(INTERRUPTED, 130)
         except OutputError as error:
             if error.closed:  # as in `arkanoid levels | head`
                 return 1
             return _fail(f"the output cannot be written: {cause(error.reason)}", 2)
+        except Exception:
+            # A module that Ctrl-C interrupts while it is imported can raise anything.
+            if interrupts:
+                return _fail(INTERRUPTED, 130)
+            raise
 
 
 def _try(words: list[str]) -> int:
-    """Run the command line; tell its errors in a sentence, and return the exit status."""
+    """Run the command line; tell its mistakes in a sentence, and return the exit status."""
     overrides: list[tuple[str, str]] = []
     if not words or words[0] not in _WITHOUT_SETTINGS:
         words, overrides = split_overrides(words)
@@ -93,8 +101,6 @@ def _try(words: list[str]) -> int:
         return _fail(str(error), 1)
     except MemoryError as error:
         return _fail(f"not enough memory: {error}".removesuffix(": "), 2)
-    except KeyboardInterrupt:
-        return _fail("interrupted", 130)
     except OSError as error:  # of a file that no command looks after
         return _fail(f"{error.filename or 'error of the system'}: {cause(error)}", 2)
     except ModuleNotFoundError as error:
@@ -153,6 +159,6 @@ def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
 
 
 def _fail(message: str, status: int) -> int:
-    # The message may quote a file of somebody else's. Where it cannot be written, the status tells.
+    # The message may quote a file of somebody else's.
     print(f"arkanoid: error: {printable(message)}", file=sys.stderr)
     return status

@@ -1,4 +1,4 @@
-"""Standard output that tells its own errors from those of files, and a standard error without."""
+"""Standard output that tells its own errors from those of files; notes that stop no command."""
 
 import contextlib
 import errno
@@ -7,6 +7,8 @@ import os
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from typing import Any, TextIO
+
+_ERRORS = 2  # the descriptor of standard error
 
 
 class OutputError(Exception):
@@ -74,47 +76,65 @@ def checked_output(stream: TextIO | None) -> Iterator[None]:
         raise
 
 
-def _drop_the_rest(stream: TextIO) -> None:
-    """Send what a stream still holds to nowhere: Python would complain once more at its end."""
-    with contextlib.suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, stream.fileno())
-        os.close(nowhere)
-
-
 class _Notes:
-    """A stream that drops what it cannot write: notes and bars stop no run."""
+    """A stream that takes everything, also what it cannot show."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        try:
-            return self._stream.write(text)
-        except OSError:
-            _drop_the_rest(self._stream)
-            return len(text)
+        with contextlib.suppress(OSError, ValueError):
+            self._stream.write(text)
+        return len(text)
 
     def flush(self) -> None:
-        try:
+        with contextlib.suppress(OSError, ValueError):
             self._stream.flush()
-        except OSError:
-            _drop_the_rest(self._stream)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
 
 @contextlib.contextmanager
-def notes(stream: TextIO | None) -> Iterator[None]:
-    """Write what goes to standard error inside the block to a stream, while that takes it.
+def harmless_notes(stream: TextIO | None) -> Iterator[None]:
+    """Write notes (bars, warnings, errors) to a stream, as far as it takes them.
 
-    Without a stream it goes nowhere: ``print`` would send it to standard output.
+    A command does its work even if nobody can read its notes: the disk behind them may be full, or
+    the stream closed (None).
     """
-    if stream is None:
-        with open(os.devnull, "w", encoding="utf-8") as nowhere, redirect_stderr(nowhere):
-            yield
-        return
-    lenient: Any = _Notes(stream)
-    with redirect_stderr(lenient):
-        yield
+    with contextlib.ExitStack() as stack:
+        if stream is None:
+            # Notes of other libraries must not get into a file that is opened in its place.
+            if not _is_open(_ERRORS):
+                _send_to_nowhere(_ERRORS)
+            stream = stack.enter_context(open(os.devnull, "w", encoding="utf-8"))
+        notes: Any = _Notes(stream)
+        try:
+            with redirect_stderr(notes):
+                yield
+        finally:
+            try:
+                stream.flush()
+            except (OSError, ValueError):
+                _drop_the_rest(stream)
+
+
+def _is_open(descriptor: int) -> bool:
+    try:
+        os.fstat(descriptor)
+    except OSError:
+        return False
+    return True
+
+
+def _drop_the_rest(stream: TextIO) -> None:
+    """Send what a stream still holds to nowhere: Python would complain once more at its end."""
+    with contextlib.suppress(OSError, ValueError):
+        _send_to_nowhere(stream.fileno())
+
+
+def _send_to_nowhere(descriptor: int) -> None:
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    if nowhere != descriptor:
+        os.dup2(nowhere, descriptor)
+        os.close(nowhere)

@@ -7,6 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 _UNFINISHED = "unfinished-"
+# Letters of a file's name that its unfinished one keeps: a longer name would exceed what a file
+# system takes.
+_KEPT = 32
 
 
 def write_atomically(path: Path, content: bytes | memoryview) -> None:
@@ -27,25 +30,28 @@ def replace_atomically(path: Path, write: Callable[[Path], None]) -> None:
     ``write`` gets the path of an empty file in the same folder, whose name ends as that of
     ``path``. If it fails, that file is removed, and ``path`` stays as it was.
 
-    Raises OSError with the name of ``path`` if there can be no file.
+    Raises OSError if there can be no file; where it names a file, that is ``path``.
     """
     # Two processes that write the same file must not write into each other's unfinished one.
-    unfinished = path.with_name(f"{_UNFINISHED}{secrets.token_hex(4)}-{path.name}")
-    # Only a new file: through a link of this name another file would be written.
+    name = f"{_UNFINISHED}{secrets.token_hex(4)}-{path.name[-_KEPT:]}"
+    unfinished = path.with_name(name)
     try:
+        # Only a new file: through a link of this name another file would be written.
         unfinished.open("xb").close()
+        try:
+            write(unfinished)
+            with unfinished.open("rb+") as file:
+                os.fsync(file.fileno())
+            os.replace(unfinished, path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                unfinished.unlink()
+            raise
     except OSError as error:
-        error.filename = str(path)
-        raise
-    try:
-        write(unfinished)
-        with unfinished.open("rb+") as file:
-            os.fsync(file.fileno())
-        os.replace(unfinished, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            unfinished.unlink()
-        raise
+        if str(error.filename) != str(unfinished):
+            raise
+        # Nobody knows the unfinished file.
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def remove_unfinished(folder: Path) -> None:

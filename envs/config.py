@@ -47,6 +47,7 @@ _PICTURES = ("size", "grey", "stack", "channels")
 SEEN = ("observation", "landing", *_PICTURES, "episodic_life")
 MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
+MOST_DECISIONS = 10**12
 
 
 def _keyword(default: Any, meaning: str, words: Mapping[str, str] | None = None) -> Any:
@@ -119,7 +120,7 @@ class Config:
         check_integer("frame_skip", self.frame_skip, 1, 1000)
         check_integer("lives", self.lives, 1, 1000)
         check_boolean("episodic_life", self.episodic_life)
-        check_integer("max_decisions", self.max_decisions, 1, 10**12)
+        check_integer("max_decisions", self.max_decisions, 1, MOST_DECISIONS)
         check_number("sticky_action", self.sticky_action, 0.0, 1.0)
         check_number("life_penalty", self.life_penalty, 0.0, 1e9)
         check_number("speed", self.speed, 1e-3, 1e6)

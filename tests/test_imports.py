@@ -53,7 +53,7 @@ ORDER = {
         learn
         measure
         experiment pretrained
-        adapter output
+        adapter interrupts output
     """,
 }
 FILES = [file for package in ORDER for file in sorted((ROOT / package).rglob("*.py"))]

@@ -5,6 +5,7 @@ import json
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -70,9 +71,12 @@ def group_by_experiment(
 ) -> dict[str, list["ModelFile"]]:
     """Return the models by agents; models of one agent differ in nothing but their seeds.
 
-    A single agent is called ``agent``, several get their experiments' names. Raises `SettingsError`
-    if the models were not trained to play the same game, or if one is given twice.
+    A single agent is called ``agent``, several get their experiments' names; what has that name
+    already, an agent or a baseline, is told apart by a number. Raises `SettingsError` if the models
+    were not trained to play the same game, or if one is given twice.
     """
+    from ..experiment.settings import BASELINES
+
     for index, model in enumerate(models):
         if model.path in [other.path for other in models[:index]]:
             raise SettingsError(f"{model.path}: given twice; give each model once")
@@ -96,6 +100,8 @@ def group_by_experiment(
         return {"agent": groups[0][1]}
     named: dict[str, list[ModelFile]] = {}
     for experiment, group in groups:
-        taken = sum(name.partition("#")[0] == experiment.name for name in named)
-        named[f"{experiment.name}#{taken + 1}" if taken else experiment.name] = group
+        name = experiment.name
+        numbered = (f"{name}#{number}" for number in count(2))
+        taken = {*BASELINES, *named}
+        named[next(free for free in chain([name], numbered) if free not in taken)] = group
     return named

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from ...envs.batch.replays import Replay
 
+_FASTEST = 1000.0  # and as much slower
 
 _EPILOG = """\
 keys in the window: space or P pause, R from the start, F fill the screen, Esc quit
@@ -32,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a replay, as `arkanoid play` saves it")
     parser.add_argument(
         "--speed",
-        type=_positive,
+        type=_speed,
         default=1.0,
         metavar="X",
         help="factor on the speed (default: 1)",
@@ -130,9 +131,10 @@ def _pictures(
     width = round(height * FULL_WIDTH / FULL_HEIGHT / 2) * 2
     rate = replay.frames_per_second
     last = replay.result.decisions
+    # Enormous numbers of seconds have no rounded product.
     if arguments.stop is not None:
-        last = min(last, round(arguments.stop * rate))
-    first = round(arguments.start * rate)
+        last = round(min(last, arguments.stop * rate))
+    first = round(min(last + 1, arguments.start * rate))
     if first > last:
         raise SettingsError(
             f"the part from second {arguments.start:g} on is empty; the game lasts "
@@ -147,10 +149,12 @@ def _pictures(
             return
 
 
-def _positive(text: str) -> float:
+def _speed(text: str) -> float:
     value = float(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"must be a number above 0; got {text}")
+    if not 1 / _FASTEST <= value <= _FASTEST:
+        raise argparse.ArgumentTypeError(
+            f"must be a number from {1 / _FASTEST:g} to {_FASTEST:g}; got {text}"
+        )
     return value
 
 

@@ -5,6 +5,7 @@ own), or `dict[str, Any]`: a free table, whose keys are checked elsewhere.
 """
 
 import difflib
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -24,6 +25,16 @@ T = TypeVar("T")
 
 COMMAND_LINE = "command line"
 _LARGEST_CONFIG = 2**20  # bytes
+# Settings have keys of two parts. The time that `tomllib` needs grows with the square of a key's.
+_MOST_DOTS = 8
+# The pieces of a TOML text. A string without an end goes to the end of the line or text, so that no
+# letter is read twice.
+_PIECES = re.compile(
+    r"""\"{3}(?:\\?.)*?(?:"{3,5}|\Z) | '{3}.*?(?:'{3,5}|\Z)
+    | "(?:\\[^\n]|[^"\\\n])*"? | '[^'\n]*'? | \#[^\n]*
+    | [^\s."'\#=,{}\[\]]+ | .""",
+    re.DOTALL | re.VERBOSE,
+)
 
 _KINDS = {
     "integer": ("an integer", "a list of integers"),
@@ -147,7 +158,7 @@ def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
 def parse_toml_value(text: str) -> Any:
     """Return what the text means in TOML, or the text itself if it means nothing there."""
     try:
-        table = tomllib.loads(f"value = {text}")
+        table = _parse_toml(f"value = {text}")
     except (ValueError, RecursionError):
         return text
     # A line break in the text could smuggle in more than the one value.
@@ -161,9 +172,24 @@ def read_toml(config: str, suffix: str = CONFIG) -> tuple[str, dict[str, Any]]:
     """
     source, text = _read_config(config, suffix)
     try:
-        return source, tomllib.loads(text)
+        return source, _parse_toml(text)
     except (ValueError, RecursionError) as error:  # also for huge numbers and deep nesting
         raise SettingsError(f"{source}: not a TOML file: {error}") from None
+
+
+def _parse_toml(text: str) -> dict[str, Any]:
+    """Return the content of a TOML text, in a time that grows with its length.
+
+    Raises ValueError or RecursionError if it is no TOML or has a key of many parts.
+    """
+    dots = 0
+    for piece in _PIECES.finditer(text):
+        if piece[0] in "\n=,{}[]":
+            dots = 0
+        dots += piece[0] == "."
+        if dots > _MOST_DOTS:
+            raise ValueError(f"a key has more than {_MOST_DOTS} dots")
+    return tomllib.loads(text)
 
 
 def _read_config(config: str, suffix: str) -> tuple[str, str]:

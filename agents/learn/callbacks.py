@@ -9,6 +9,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from tqdm import tqdm  # type: ignore[import-untyped]
 
 from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
+from .checkpoint_form import STOP
 
 # Statistics of the latest episodes that the progress bar shows, and its names for them.
 _SHOWN = {"r": "return", "hits": "bricks", "rounds_cleared": "rounds"}
@@ -68,20 +69,35 @@ class ProgressBar(BaseCallback):
 class StopRequest(BaseCallback):
     """Ends the training after the decision in which someone asks for it.
 
+    Args:
+        state: this callback's, empty or from a checkpoint; it is changed in place. It has the
+            reason, so that a run that was killed at its end does not train on.
+
     Attributes:
-        reason: why the training ends, or None.
+        interrupted: whether the training is interrupted, and can be resumed.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, state: dict[str, Any]) -> None:
         super().__init__()
-        self.reason: str | None = None
+        self._state = state
+        state.setdefault(STOP, "")
+        self.interrupted = False
+
+    @property
+    def reason(self) -> str | None:
+        """Why the run has ended; None if it has not."""
+        return self._state[STOP] or None
 
     def request(self, reason: str) -> None:
-        """Ask for the end of the training."""
-        self.reason = reason
+        """Ask for the end of the run."""
+        self._state[STOP] = reason
+
+    def interrupt(self) -> None:
+        """Ask for an interruption."""
+        self.interrupted = True
 
     def _on_step(self) -> bool:
-        return self.reason is None
+        return self.reason is None and not self.interrupted
 
 
 def _recent_mean(model: Any, key: str) -> float | None:

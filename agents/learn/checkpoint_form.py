@@ -20,7 +20,9 @@ State = dict[str, Any]
 
 # What stable-baselines3 keeps of the latest episodes.
 RECENT = ("ep_info_buffer", "ep_success_buffer")
-_LONGEST_NAME = 200  # of something that is logged
+# The key of the callbacks' state that has the reason why the run has ended; "" if it has not.
+STOP = "stop"
+_LONGEST_NAME = 200  # of something that is logged, and of a reason
 
 
 @dataclass(frozen=True)
@@ -144,11 +146,18 @@ def _check_log(state: Any, fresh: State) -> None:
 
 
 def _check_callbacks(state: Any) -> None:
-    """Raise ValueError unless callbacks have left numbers, and no best one where there is none."""
-    own = dict(state) if isinstance(state, dict) else None
-    validation = own.pop("validation", {}) if own is not None else None
-    if own is not None:
-        own.pop(LEVELS, None)  # `check_levels` looks at it
+    """Raise ValueError unless callbacks have left numbers and the reason of the run's end.
+
+    There need be no best number.
+    """
+    if not isinstance(state, dict):
+        raise ValueError("callbacks must hold numbers")
+    own = dict(state)
+    reason = own.pop(STOP, "")
+    if type(reason) is not str or not reason.isprintable() or len(reason) > _LONGEST_NAME:
+        raise ValueError(f"callbacks.{STOP} must hold a line of text")
+    validation = own.pop("validation", {})
+    own.pop(LEVELS, None)  # `check_levels` looks at it
     if isinstance(validation, dict) and validation.get("best", 0.0) is None:
         validation = {**validation, "best": 0.0}
     _check_numbers(own, "callbacks")

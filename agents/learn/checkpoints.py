@@ -31,7 +31,7 @@ from .tensors import read_tensors, write_tensors
 # What stable-baselines3 counts and keeps from one rollout to the next.
 _COUNTERS = ("num_timesteps", "_n_updates", "_episode_num", "_current_progress_remaining")
 _LAST = ("_last_obs", "_last_episode_starts")
-_FORMAT = 3
+_FORMAT = 4
 
 
 def capture(model: PPO, venv: GymnasiumVecEnv, callback_state: dict[str, Any]) -> State:
@@ -242,10 +242,10 @@ class Checkpoints(BaseCallback):
     def finish(self, complete: bool) -> int:
         """Write the last checkpoint and return the number of decisions until then.
 
-        ``complete`` says whether the last rollout came to its end; otherwise the checkpoint is the
-        state before that rollout.
+        ``complete`` says whether the last rollout, if there was one, came to its end; otherwise the
+        checkpoint is the state before that rollout.
         """
-        if complete:
+        if complete or self._state is None:
             self._capture()
         self._write()
         return self._written

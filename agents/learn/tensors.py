@@ -62,8 +62,16 @@ def is_like(value: Any, tensor: torch.Tensor) -> bool:
 
 
 def read_entry(archive: zipfile.ZipFile, name: str, limit: int) -> bytes:
-    """Return a file in a zip file; raises ValueError if it has more than ``limit`` bytes."""
-    with archive.open(name) as file:
+    """Return a file in a zip file, and unpack at most ``limit`` bytes of it.
+
+    Raises ValueError if it has more, or is packed in another way than `torch.save` or
+    stable-baselines3 do.
+    """
+    entry = archive.getinfo(name)
+    # `zipfile` unpacks other kinds without a limit: a few kilobytes would fill the memory.
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ValueError(f"{name} is packed in an unknown way")
+    with archive.open(entry) as file:
         # What the zip file says of the size may be a lie.
         content = file.read(limit + 1)
     if len(content) > limit:

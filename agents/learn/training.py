@@ -126,7 +126,7 @@ def _train(
         # stable-baselines3 has just given the worlds neighbouring seeds.
         venv.set_seeds(spread_seeds(experiment.seed, Purpose.TRAINING, venv.num_envs))
         venv.set_options(stages.options())
-    stop = StopRequest()
+    stop = StopRequest(callback_state)
 
     def warn(message: str) -> None:
         tqdm.write(f"arkanoid: warning: {message}", file=sys.stderr)
@@ -153,13 +153,13 @@ def _train(
         model.logger.output_formats.append(TensorBoard(str(folder.log), first))
         if on_log is not None:
             model.logger.output_formats.append(_Told(on_log))
-        with _on_interrupt(lambda: stop.request(INTERRUPTED)):
+        with _on_interrupt(stop.interrupt):
             model.learn(
-                experiment.training.timesteps - first,
+                0 if stop.reason else experiment.training.timesteps - first,
                 callback=callbacks,
                 reset_num_timesteps=not resumed,
             )
-        complete = stop.reason is None
+        complete = stop.reason is None and not stop.interrupted
         if complete and validation is not None:
             validation.finish()
         last = checkpoints.finish(complete)
@@ -176,7 +176,7 @@ def _train(
         if validation is not None:
             validation.close()
         model.logger.close()
-    outcome = stop.reason or FINISHED
+    outcome = INTERRUPTED if stop.interrupted else stop.reason or FINISHED
     save_model(model, folder.model)
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
     folder.add_notes(outcome=outcome, timesteps=last, weights=hashed)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...envs.config import Config
 from ..experiment.seeds import Purpose, spread_seed, spread_seeds
-from ..experiment.settings import Experiment
+from ..experiment.settings import BASELINES, Experiment
 from ..experiment.worlds import make_worlds
 from .baselines import make_baseline
 from .episodes import play_episodes
@@ -58,7 +58,12 @@ def compare(
         agents: by their names; each is one model, or several that were trained with different
             seeds.
         tell: gets a message about who plays next.
+
+    Raises:
+        ValueError: an agent has the name of a baseline.
     """
+    if not agents.keys().isdisjoint(BASELINES):
+        raise ValueError("an agent has the name of a baseline")
     comparison: Comparison = {}
     for suite_name, suite in make_suites(experiment).items():
         results: dict[str, Results] = {}

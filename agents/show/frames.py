@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...envs.config import MOST_DECISIONS
 from ...envs.rules import TICKS_PER_SECOND
 from ..experiment.seeds import Purpose, spread_seed
 from ..experiment.settings import Experiment
@@ -60,10 +61,12 @@ def film_policy(
 def can_be_smooth(experiment: Experiment) -> bool:
     """Tell whether the game stays the same when it is shown tick by tick.
 
-    It does not if the policy sees a stack of pictures, or if chance repeats actions.
+    It does not if the policy sees a stack of pictures, or if chance repeats actions, or if it may
+    last longer than a configuration allows.
     """
     config = experiment.config
-    return config.stack == 1 and not config.sticky_action
+    ticks = config.max_decisions * config.frame_skip
+    return config.stack == 1 and not config.sticky_action and ticks <= MOST_DECISIONS
 
 
 def frame_rate(experiment: Experiment, smooth: bool) -> float:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -29,6 +30,8 @@ _CURVES = {
     "validation/score": "score, validation",
 }
 _POINTS = 200
+# Names come from files: a dollar in them is a dollar, and no formula.
+_plain_texts = rc_context({"text.parse_math": False, "text.usetex": False})
 
 
 def plot_comparison(experiment: Experiment, comparison: Comparison, folder: Path) -> list[Path]:
@@ -46,6 +49,7 @@ def plot_comparison(experiment: Experiment, comparison: Comparison, folder: Path
     return paths
 
 
+@_plain_texts
 def as_png(figure: Figure, dpi: int) -> bytes:
     """Return a figure as the content of a PNG file."""
     buffer = io.BytesIO()
@@ -53,6 +57,7 @@ def as_png(figure: Figure, dpi: int) -> bytes:
     return buffer.getvalue()
 
 
+@_plain_texts
 def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:
     """Draw the means of all policies, with their intervals."""
     figure = Figure(figsize=(3 * len(_BARS), 3.2), layout="constrained")
@@ -69,6 +74,7 @@ def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:
     return figure
 
 
+@_plain_texts
 def plot_levels(
     title: str, starts: Sequence[EpisodeStart], results: Mapping[str, Results]
 ) -> Figure:
@@ -76,27 +82,30 @@ def plot_levels(
     figure = Figure(figsize=(8, 1.2 + 0.28 * len(starts)), layout="constrained")
     axes = figure.subplots()
     places = np.arange(len(starts))
-    for index, (name, measured) in enumerate(results.items()):
+    marks = []
+    for index, measured in enumerate(results.values()):
         shift = 0.5 * (index / max(1, len(results) - 1) - 0.5)
         intervals = [level_interval(measured["cleared"], level) for level in places.tolist()]
-        axes.errorbar(
+        bars = axes.errorbar(
             [interval.estimate for interval in intervals],
             places + shift,
             xerr=_errors(intervals),
             fmt="o",
             markersize=4,
-            label=name,
         )
+        marks.append(bars)
     axes.set_yticks(places, [start.name for start in starts])
     axes.invert_yaxis()
     axes.set_xlabel("cleared rate")
     axes.set_xlim(-0.05, 1.05)
     axes.grid(axis="x", alpha=0.3)
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    # A label that begins with an underscore would be left out.
+    axes.legend(marks, list(results), loc="center left", bbox_to_anchor=(1, 0.5))
     axes.set_title(title)
     return figure
 
 
+@_plain_texts
 def plot_curves(curves: Sequence[Sequence[Mapping[str, Any]]]) -> Figure:
     """Draw the learning curves of an agent: the mean of its runs, with its interval."""
     shown = {

@@ -192,3 +192,24 @@ def test_a_film_may_have_a_colon_in_its_name(
     monkeypatch.chdir(tmp_path)
     write_film(Path("file:a.mp4"), pictures(3), 20)
     assert [path.name for path in tmp_path.iterdir()] == ["file:a.mp4"]
+
+
+def test_a_failed_write_names_the_file(tmp_path: Path) -> None:
+    """The sentence named `unfinished-1a2b3c4d-model.zip`, of which nobody knows."""
+    (tmp_path / "model.zip").mkdir()
+    with pytest.raises(OSError, match=r"irectory|denied") as caught:
+        write_atomically(tmp_path / "model.zip", b"content")
+    assert caught.value.filename == str(tmp_path / "model.zip")
+    assert caught.value.filename2 is None
+    assert "unfinished" not in str(caught.value)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems count letters, not bytes")
+@pytest.mark.parametrize("letter", ["a", "é", "\N{SNOWMAN}"])
+def test_a_name_may_be_as_long_as_the_system_takes(letter: str, tmp_path: Path) -> None:
+    """The name of the unfinished file was longer: names of 236 letters and more were refused."""
+    count, rest = divmod(255 - len(".gif"), len(letter.encode()))
+    path = tmp_path / f"{'a' * rest}{letter * count}.gif"
+    assert len(path.name.encode()) == 255
+    write_film(path, pictures(3), 20)
+    assert list(tmp_path.iterdir()) == [path]

@@ -93,6 +93,7 @@ FORGED: dict[str, Any] = {
     "log.values": {"timesteps": 1.0},
     "log.counts": {"a\x1b[31m": 1},
     "callbacks.stage": 0.5,
+    "callbacks.stop": "a\x1b[31m",
     "callbacks.validation.due": -1,
     "callbacks.validation.best": math.nan,
     "callbacks.validation.worse": 1.5,

@@ -1,7 +1,12 @@
 """Absurd sizes, trainings that diverge and full disks: a sentence, and no traceback."""
 
 import errno
+import io
+import shutil
 import sys
+import tomllib
+import tracemalloc
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,8 +14,10 @@ import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment import files
 from arkanoid.agents.experiment.errors import SettingsError
-from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.reading import read_toml
+from arkanoid.agents.experiment.runs import RunFolder, pretrained_run
 from arkanoid.agents.learn.curves import read_curve
+from arkanoid.agents.learn.tensors import read_entry, read_tensors
 from arkanoid.agents.learn.training import train
 from helpers.processes import run_program
 from helpers.runs import SMALL, sentence, small
@@ -60,6 +67,79 @@ def test_a_film_without_end_is_refused(seconds: str, capsys: pytest.CaptureFixtu
 def test_a_film_of_a_great_length_ends_with_the_game(tmp_path: Path) -> None:
     arguments = ["film", str(tmp_path / "x.gif"), "--seconds", "1e300"]
     assert cli.main([*arguments, "--env.max_decisions", "20"]) == 0
+
+
+@pytest.mark.parametrize("kind", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_a_model_that_python_would_unpack_without_a_limit_is_refused(
+    kind: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """24 kilobytes took 6.5 GB: the limit was compared afterwards."""
+    run = RunFolder(tmp_path / "received")
+    shutil.copytree(pretrained_run(), run.path)
+    with zipfile.ZipFile(run.model, "w", kind) as archive:
+        archive.writestr("policy.pth", bytes(10_000_000))
+    assert "policy.pth is packed in an unknown way" in sentence(["evaluate", str(run.path)], capsys)
+    with pytest.raises(ValueError, match="packed in an unknown way"):
+        read_tensors(run.model.read_bytes())
+
+
+def test_a_deflated_file_is_unpacked_up_to_the_limit() -> None:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("zeros", bytes(50_000_000))
+    with zipfile.ZipFile(buffer) as archive:
+        tracemalloc.start()
+        with pytest.raises(ValueError, match="larger than 1,000 bytes"):
+            read_entry(archive, "zeros", 1000)
+        _, most = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert most < 1_000_000
+        assert read_entry(archive, "zeros", 50_000_000) == bytes(50_000_000)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a" + ".a" * 500_000 + " = 1",
+        "[a" + " . 'a'" * 150_000 + "]",
+        "x = {a" + '."a, # [a" ' * 90_000 + " = 1}",
+        'x = {y = """\\""" \' # """, a' + ".a" * 400_000 + " = 1}",
+        "x = " + "[" * 500_000,
+        "x = " + "{a = " * 150_000,
+        'x = "' + '\\"' * 500_000,
+        'x = """' + '\\"""' * 200_000,
+    ],
+    ids=["dots", "table", "quoted", "hidden", "lists", "tables", "text", "lines"],
+)
+def test_a_hostile_config_is_refused_at_once(
+    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Half a million dots would have kept the reader of TOML busy for days."""
+    config = tmp_path / "config.toml"
+    config.write_text(text)
+    assert "not a TOML file" in sentence(["train", str(config)], capsys)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'a = "' + "b." * 20 + '"\nc.d = 1.5 # ' + "e." * 20,
+        "a = '" + "b." * 20 + '\' # \' " """\nc.d = 1',
+        'a = """\n' + "b." * 20 + '\\""" " """""\nc.d = 1',
+        "a = '''\n" + "b." * 20 + "'' \\'''''\nc.d = 1",
+        "a = [" + "1.5, " * 20 + "]\n" + "".join(f"c.d{index} = 1\n" for index in range(20)),
+    ],
+)
+def test_dots_in_texts_comments_and_numbers_are_not_counted(text: str, tmp_path: Path) -> None:
+    config = tmp_path / "config.toml"
+    config.write_text(text)
+    assert read_toml(str(config))[1] == tomllib.loads(text)
+
+
+def test_a_film_of_the_longest_game_is_written(tmp_path: Path) -> None:
+    """Tick by tick the game would last longer than a game may: a ValueError and a traceback."""
+    arguments = ["film", str(tmp_path / "x.mp4"), "--seconds", "0.2"]
+    assert cli.main([*arguments, "--env.max_decisions", "1000000000000"]) == 0
 
 
 # Full disks

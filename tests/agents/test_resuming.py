@@ -9,11 +9,13 @@ from typing import Any
 
 import pytest
 from arkanoid.agents import cli
+from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.learn.curves import STEP, CurveWriter, read_curve
 from arkanoid.agents.learn.training import train
 from helpers.processes import run_arkanoid, start_arkanoid
+from helpers.runs import small
 
 # Everything that has a state is in use: a schedule, a curriculum, validation, generated levels and
 # sticky actions. Episodes are short: many end, and some are truncated.
@@ -182,3 +184,37 @@ def test_curves_continue_at_the_checkpoints_step(tmp_path: Path) -> None:
     ]
     CurveWriter(path).close()
     assert read_curve(path) == []
+
+
+def test_a_run_that_validation_ended_does_not_train_on(tmp_path: Path) -> None:
+    """The reason was only in run.json, and the process died before it was written there."""
+    # Nothing is ever cleared: the second measurement is not better than the first.
+    ended = {"validation.every": "512", "validation.episodes": "1", "validation.patience": "1"}
+    experiment = small(tmp_path, **ended)
+    whole, run = RunFolder.create(experiment), RunFolder.create(experiment)
+    outcome = train(experiment, whole)
+    assert "without a better one at 1024" in outcome
+    run.model.mkdir()
+    with pytest.raises(SettingsError, match=r"/model\.zip failed") as caught:
+        train(experiment, run)
+    assert f"arkanoid train --resume {run.path}" in str(caught.value)
+    assert run.read_notes()["outcome"] == "unfinished"
+    run.model.rmdir()
+    assert train(experiment, run, resumed=True) == outcome
+    for name in ("outcome", "timesteps", "weights"):
+        assert run.read_notes()[name] == whole.read_notes()[name]
+    assert curve(run) == curve(whole)
+
+
+def test_an_interrupted_run_that_validation_ended_only_has_to_finish(tmp_path: Path) -> None:
+    """Ctrl-C during a measurement that ends a trial let the search go on."""
+    experiment = small(tmp_path, **{"validation.every": "512", "validation.episodes": "1"})
+    run = RunFolder.create(experiment)
+
+    def judge(step: int, means: dict[str, float]) -> str:
+        signal.raise_signal(signal.SIGINT)
+        return "pruned"
+
+    assert train(experiment, run, on_measure=judge) == "interrupted"
+    assert train(experiment, run, resumed=True) == "pruned"
+    assert run.read_notes()["timesteps"] == 512

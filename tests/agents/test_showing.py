@@ -16,17 +16,19 @@ from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.provenance import weights_hash
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.seeds import Purpose, spread_seeds
-from arkanoid.agents.experiment.settings import load_experiment
+from arkanoid.agents.experiment.settings import BASELINES, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn.curves import STEP
 from arkanoid.agents.learn.training import train
 from arkanoid.agents.measure.baselines import make_baseline
+from arkanoid.agents.measure.comparison import COLUMNS, compare
 from arkanoid.agents.measure.episodes import play_episodes
-from arkanoid.agents.measure.suites import WHOLE_GAMES, find_starts
+from arkanoid.agents.measure.suites import WHOLE_GAMES, EpisodeStart, find_starts
 from arkanoid.agents.show.frames import can_be_smooth, frame_rate, play_frames
 from arkanoid.agents.show.page import as_html, code, escape, table, write_page
-from arkanoid.agents.show.plots import mean_curve
+from arkanoid.agents.show.plots import as_png, mean_curve, plot_levels, plot_policies
 from imageio_ffmpeg import count_frames_and_secs
+from matplotlib.text import Text
 from PIL import Image
 from stable_baselines3 import PPO
 
@@ -155,6 +157,37 @@ def test_runs_that_differ_in_their_seeds_are_one_agent(runs: list[str], tmp_path
     game.model.write_bytes(b"")
     with pytest.raises(SettingsError, match="another 'env_id' or 'env'"):
         group_by_experiment([*models, ModelFile.find(str(game.path))], [])
+
+
+def test_each_agent_has_a_name_of_its_own(tmp_path: Path) -> None:
+    """An agent called "random" lost its row to the baseline, and of x, x and x#2 two were left."""
+    names = [*BASELINES, "x", "x", "x#2", "x"]
+    models = []
+    for index, name in enumerate(names, 1):
+        size = ("network.hidden", f"[{index}]")
+        other = load_experiment("quick", [*SMALL, ("output", str(tmp_path)), size])
+        run = RunFolder.create(replace(other, name=name))
+        run.model.write_bytes(b"")
+        models.append(ModelFile.find(str(run.path)))
+    agents = group_by_experiment(models, [])
+    assert list(agents.values()) == [[model] for model in models]
+    assert [name.partition("#")[0] for name in agents] == [name.partition("#")[0] for name in names]
+    assert agents.keys().isdisjoint(BASELINES)
+    with pytest.raises(ValueError, match="name of a baseline"):
+        compare(models[0].run.experiment(), {"random": []})
+
+
+def test_names_in_plots_are_no_formulas(runs: list[str]) -> None:
+    """The name "$^$" was an error of matplotlib's, and "_x" was missing in the legend."""
+    names = ["$^$", "_x", r"$\alpha$"]
+    measured = {key: np.ones((1, 2, 2)) for key in COLUMNS}
+    results = dict.fromkeys(names, measured)
+    starts = [EpisodeStart("$_$", {}), EpisodeStart("_", {})]
+    for figure in (plot_policies("$}$", results), plot_levels("$}$", starts, results)):
+        assert as_png(figure, 50)
+        shown = {text.get_text() for text in figure.findobj(Text)}
+        assert {*names, "$}$"} <= shown
+        assert not any(text.get_parse_math() for text in figure.findobj(Text) if text.get_text())
 
 
 def test_a_model_given_twice_is_refused(

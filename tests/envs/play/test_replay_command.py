@@ -124,6 +124,7 @@ def test_films_name_the_package_that_is_missing(
         (["GAME", "--export", "x.avi"], "exports are .gif, .mp4 or .png"),
         (["GAME", "--export", "no/such/x.gif"], "no/such/x.gif: No such file"),
         (["GAME", "--export", "x.png", "--from", "999"], "the game lasts"),
+        (["GAME", "--export", "x.png", "--from", "1e308"], "the game lasts"),
         (["GAME", "--export", "x.png", "--height", "0"], "height must be between"),
         (["WRONG"], "this is no replay"),
     ],
@@ -146,11 +147,37 @@ def test_mistakes_are_one_line_each(
     assert words in message
 
 
-@pytest.mark.parametrize("option", [["--speed", "0"], ["--speed", "nan"], ["--from", "-1"]])
-def test_illegal_numbers_are_refused(option: list[str]) -> None:
+def test_a_part_may_end_long_after_the_game(game: Replay, tmp_path: Path) -> None:
+    """Enormous numbers of seconds were an OverflowError."""
+    game.save(tmp_path / "game.replay")
+    export = ["replay", str(tmp_path / "game.replay"), "--export"]
+    for name, part in {"all.png": [], "long.png": ["--to", "1e308"]}.items():
+        assert cli.main([*export, str(tmp_path / name), *part]) == 0
+    assert (tmp_path / "all.png").read_bytes() == (tmp_path / "long.png").read_bytes()
+
+
+@pytest.mark.parametrize("speed", ["0.001", "1000"])
+def test_a_film_has_the_slowest_and_the_fastest_speed(
+    speed: str, game: Replay, tmp_path: Path
+) -> None:
+    game.save(tmp_path / "game.replay")
+    for name in ("x.gif", "x.mp4"):
+        export = ["replay", str(tmp_path / "game.replay"), "--export", str(tmp_path / name)]
+        assert cli.main([*export, "--to", "0.1", "--height", "64", "--speed", speed]) == 0
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        *(["--speed", speed] for speed in ("0", "nan", "1e308", "1e-300")),
+        ["--from", "-1"],
+    ],
+)
+def test_illegal_numbers_are_refused(option: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stop:
         cli.main(["replay", "x", *option])
     assert stop.value.code == 2
+    assert f"argument {option[0]}: must be a number" in capsys.readouterr().err
 
 
 def test_a_replay_is_shown_in_a_window(
