@@ -1,6 +1,5 @@
 """What commands print, wherever it goes, and what they need to print their help."""
 
-import json
 import os
 import sys
 from pathlib import Path
@@ -60,29 +59,6 @@ def test_a_reader_that_has_ended_is_no_error(command: list[str]) -> None:
     *messages, status = done.stderr.splitlines()
     assert status == "status 1"
     assert not any("rror" in message for message in messages)
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="there is no /dev/full")
-@pytest.mark.parametrize("where", ["/dev/full", "&-"])
-def test_notes_that_nobody_can_write_stop_no_run(where: str, tmp_path: Path) -> None:
-    """A full standard error ended a measurement with status 2, and a closed one spoilt the JSON."""
-    command = [*ARKANOID, *PRINTING["JSON"], "--plots", str(tmp_path)]
-    done = run("sh", "-c", f'"$@" 2>{where}', "sh", *command)
-    assert set(json.loads(done.stdout)) >= {"suites", "models"}
-    assert list(tmp_path.glob("*.*"))
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="there is no /dev/full")
-def test_a_training_goes_on_where_its_bar_cannot_be_written(tmp_path: Path) -> None:
-    settings = [f"--{key}={value}" for key, value in {**SMALL, "output": str(tmp_path)}.items()]
-    run("sh", "-c", '"$@" 2>/dev/full', "sh", *ARKANOID, "train", "quick", *settings)
-    assert list(tmp_path.rglob("model.zip"))
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="there is no /dev/full")
-def test_a_mistake_has_its_status_where_it_cannot_be_told() -> None:
-    run("sh", "-c", '"$@" 2>/dev/full', "sh", *ARKANOID, "levels", "nowhere", status=2)
-    run("sh", "-c", '"$@" 2>/dev/full', "sh", *ARKANOID, "levels", "--nothing", status=2)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="another shell")

@@ -6,7 +6,7 @@ bricks, and multiplies a lattice by the first layer once, for as long as no bric
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import torch
@@ -208,59 +208,97 @@ class Lattices:
 
     def evaluated(self, order: Tensor, runs: int) -> Iterator[tuple[Tensor, Tensor]]:
         """Yield outputs and values of minibatches."""
-        one, other = self._actor[0], self._critic[0]
-        widths = [one.out_features, other.out_features]
-        seconds = [layers[1:2] for layers in (self._actor, self._critic)]
-        both_rectify = all(layer and type(layer[0]) is nn.ReLU for layer in seconds)
-        begin = 2 if both_rectify else 1
+        networks = [(layers[0], *_rest(layers)) for layers in (self._actor, self._critic)]
         for chosen in order.split(runs):
-            numbers = self._others_of_runs[chosen].flatten(0, 1)
-            first = self._first_of_runs[chosen].flatten()
+            others = self._others_of_runs.index_select(0, chosen).flatten(0, 1)
+            first = self._first_of_runs.index_select(0, chosen).flatten()
             starts = first.nonzero().flatten()
-            rows = self._rows_of_runs[chosen].flatten()[starts]
+            rows = self._rows_of_runs.index_select(0, chosen).flatten().index_select(0, starts)
             lengths = torch.diff(starts, append=torch.tensor([len(first)]))
-            # Both first layers in one product.
-            weight, bias = torch.cat([one.weight, other.weight]), torch.cat([one.bias, other.bias])
-            of_bricks, of_others = _split(weight, self._bricks)
-            products = torch.addmm(bias, self._lattices[rows], of_bricks.t())
-            places = first.cumsum(0) - 1
-            hidden: Tensor = FirstLayer.apply(products, places, lengths, numbers, of_others)  # type: ignore[no-untyped-call]
-            if both_rectify:
-                hidden = hidden.relu_()
-            actor, critic = hidden.split(widths, 1)
-            outputs = _through(self._actor[begin:], actor)
-            yield outputs, _through(self._critic[begin:], critic).flatten()
+            seen = LatticesSeen(
+                self._lattices.index_select(0, rows), first.cumsum(0) - 1, lengths, self._bricks
+            )
+            outputs, values = (
+                _through(rest, FirstLayer.apply(layer.weight, layer.bias, seen, others, rectify))  # type: ignore[no-untyped-call]
+                for layer, rectify, rest in networks
+            )
+            yield outputs, values.flatten()
+
+
+class LatticesSeen(NamedTuple):
+    """The distinct lattices of a minibatch's decisions [n].
+
+    Attributes:
+        bricks: of each lattice, [lattices, cells].
+        places: the lattice of each decision, [n], rising.
+        lengths: how many decisions saw each lattice, [lattices].
+        columns: the bricks' columns of the first layer's weights.
+    """
+
+    bricks: Tensor
+    places: Tensor
+    lengths: Tensor
+    columns: slice
 
 
 class FirstLayer(torch.autograd.Function):
-    """Sums of a lattice's products, repeated over a run of decisions, and those of other numbers.
+    """A linear layer, with a rectifier if asked for, of lattices and of other numbers.
 
-    The gradient of a lattice's products is the sum over its run.
+    A lattice's products are made once, and repeated over the decisions that saw it. Their gradient
+    is the sum over these decisions. By hand, because torch would make and add whole arrays for
+    each slice of the weights.
     """
 
     @staticmethod
     def forward(
-        ctx: Any, products: Tensor, places: Tensor, lengths: Tensor, others: Tensor, weight: Tensor
+        ctx: Any,
+        weight: Tensor,
+        bias: Tensor,
+        seen: LatticesSeen,
+        others: Tensor,
+        rectify: bool,
     ) -> Tensor:
-        """Return sums [n, units].
+        """Return the layer's values [n, units].
 
         Args:
             ctx: torch's.
-            products: of the lattices and the bias, [lattices, units].
-            places: the lattice of each decision, [n], rising.
-            lengths: how many decisions saw each lattice, [lattices].
-            others: the other numbers, [n, numbers]; they get no gradient.
-            weight: theirs, [units, numbers].
+            weight: [units, inputs].
+            bias: [units].
+            seen: the decisions' lattices.
+            others: the decisions' other numbers, [n, inputs - cells]; they get no gradient.
+            rectify: whether a rectifier follows.
         """
-        ctx.save_for_backward(lengths, others)
-        return products.index_select(0, places).addmm_(others, weight.t())
+        of_bricks, of_others = _split(weight, seen.columns)
+        products = torch.addmm(bias, seen.bricks, of_bricks.t())
+        hidden = products.index_select(0, seen.places).addmm_(others, of_others.t())
+        ctx.seen, ctx.rectify = seen, rectify
+        if rectify:
+            hidden.relu_()
+        ctx.save_for_backward(others, hidden if rectify else None)
+        ctx.shape = weight.shape
+        return hidden
 
     @staticmethod
-    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None, None, None, Tensor]:
-        """Return the gradients of ``products`` and ``weight``."""
-        lengths, others = ctx.saved_tensors
-        sums = torch.segment_reduce(gradient, "sum", lengths=lengths, axis=0, unsafe=True)
-        return sums, None, None, None, gradient.t() @ others
+    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, Tensor, None, None, None]:
+        """Return the gradients of ``weight`` and ``bias``."""
+        others, hidden = ctx.saved_tensors
+        seen: LatticesSeen = ctx.seen
+        if ctx.rectify:
+            gradient = torch.ops.aten.threshold_backward(gradient, hidden, 0)
+        sums = torch.segment_reduce(gradient, "sum", lengths=seen.lengths, axis=0, unsafe=True)
+        of_others = gradient.t() @ others
+        of_weight = gradient.new_empty(ctx.shape)
+        start, stop = seen.columns.start, seen.columns.stop
+        of_weight[:, :start] = of_others[:, :start]
+        of_weight[:, start:stop] = sums.t() @ seen.bricks
+        of_weight[:, stop:] = of_others[:, start:]
+        return of_weight, sums.sum(0), None, None, None
+
+
+def _rest(layers: list[nn.Module]) -> tuple[bool, list[nn.Module]]:
+    """Return whether a rectifier follows the first layer, and the layers after both."""
+    rectify = len(layers) > 1 and type(layers[1]) is nn.ReLU
+    return rectify, layers[2 if rectify else 1 :]
 
 
 def _through(layers: list[nn.Module], numbers: Tensor) -> Tensor:

@@ -135,8 +135,8 @@ class Rollout:
         runs = self._batch_size // run
         drawn = torch.randperm(self._of_runs.shape[1])
         order = drawn.to(self._outputs.device)
-        numbers = self._of_runs[:, order].flatten(1).split(runs * run, 1)
-        actions = self._actions_of_runs[order].flatten(0, 1).split(runs * run)
+        numbers = self._of_runs.index_select(1, order).flatten(1).split(runs * run, 1)
+        actions = self._actions_of_runs.index_select(0, order).flatten(0, 1).split(runs * run)
         decisions = self._decisions[drawn].flatten().split(runs * run)
         networks = self._observations.evaluated(order, runs)
         for (outputs, values), chosen, four, indices in zip(
