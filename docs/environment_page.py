@@ -228,11 +228,11 @@ the ceiling. Numbers of things that are not there are 0.
 
 With `reward="score"`, two parts follow, which say what pays: {further_parts(vector.PAY_PARTS)}.
 
-With `landing=True`, three parts are the last: {further_parts(LANDING_PARTS)}.
+With `landing=True`, three parts come last: {further_parts(LANDING_PARTS)}.
 Each ball flies alone, exactly as in the game, among walls, bricks and the boss as they stand. It
 breaks bricks on its way; there are no enemies. A held ball is there already. A landing is unknown
-if the ball would clear the round before, has more than {LANDING_IMPACTS} impacts, or falls below
-the paddle's upper side already.
+if the ball would clear the round first, has more than {LANDING_IMPACTS} impacts, or is already
+below the paddle's upper side.
 
 ### `grid`
 
@@ -354,9 +354,9 @@ The vector environment also takes:
 
 {table(("keyword", "default", "meaning"), vector_keywords)}
 
-An environment belongs to one thread at a time: a call of `step`, `reset`, `snapshot` or `restore`
-while another thread is in one of them raises a RuntimeError. A forked process may go on with its
-copy.
+An environment belongs to one thread at a time: a call of `step`, `reset`, `snapshot`, `restore` or
+`spread` while another thread is in one of them raises a RuntimeError. A forked process may go on
+with its copy.
 
 ## Methods
 

@@ -64,8 +64,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         autoreset_mode: a Gymnasium `AutoresetMode` or its text (``"NextStep"``, ``"SameStep"``,
             ``"Disabled"``).
         copy: whether `reset` and `step` return fresh observations. With False they return views of
-            the same memory each time: do not write into it, a later step writes only what
-            has changed.
+            the same memory each time: do not write into it, a later step writes only changes.
         threads: the largest number of threads that step the worlds; None lets the number of
             worlds decide. It changes no bit of the results.
         render_size: of the frames: their height in pixels (the width follows), or (height, width);

@@ -98,6 +98,7 @@ class FastPPO(PPO):
         callback.on_rollout_start()
         # Only now: the callback may begin new episodes.
         observations: Any = self._last_obs
+        dones: Any = self._last_episode_starts
         rollout.begin()
         for step in range(n_rollout_steps):
             actions = rollout.act(step, observations)
@@ -144,7 +145,8 @@ class FastPPO(PPO):
     def _keep_last(self, observations: Any, dones: Any) -> None:
         """Keep what the next rollout begins with; the environment may use its arrays again."""
         is_tensor = isinstance(observations, torch.Tensor)
-        self._last_obs = observations.clone() if is_tensor else np.array(observations)
+        kept: Any = observations.clone() if is_tensor else np.array(observations)
+        self._last_obs = kept
         self._last_episode_starts = np.array(dones)
 
     def train(self) -> None:
@@ -157,9 +159,11 @@ class FastPPO(PPO):
         self._update_learning_rate(self.policy.optimizer)
         optimizer = self.policy.optimizer
         statistics: list[Tensor] = []
+        divergences: list[Tensor] = []
+        loss = torch.zeros(())
         goes_on = True
         for epoch in range(self.n_epochs):
-            divergences: list[Tensor] = []
+            divergences = []
             for batch in rollout.minibatches():
                 loss, of_batch, divergence = self.loss(batch)
                 statistics.append(of_batch)

@@ -124,8 +124,8 @@ class Lattices:
         self._bricks = bricks
         self._steps, self._worlds = steps, worlds
         self._extra = getattr(policy.features_extractor, "extra", None)
-        self._actor = [*policy.mlp_extractor.policy_net, policy.action_net]
-        self._critic = [*policy.mlp_extractor.value_net, policy.value_net]
+        self._actor: list[Any] = [*policy.mlp_extractor.policy_net, policy.action_net]
+        self._critic: list[Any] = [*policy.mlp_extractor.value_net, policy.value_net]
         others = policy.features_dim - (bricks.stop - bricks.start)
         self._others = torch.empty(steps + 1, worlds, others)
         self._rows = np.empty((steps + 1, worlds), np.int64)
@@ -279,9 +279,10 @@ class FirstLayer(torch.autograd.Function):
         return hidden
 
     @staticmethod
-    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, Tensor, None, None, None]:
+    def backward(ctx: Any, *grad_outputs: Tensor) -> tuple[Tensor, Tensor, None, None, None]:
         """Return the gradients of ``weight`` and ``bias``."""
         others, hidden = ctx.saved_tensors
+        (gradient,) = grad_outputs
         seen: LatticesSeen = ctx.seen
         if ctx.rectify:
             gradient = torch.ops.aten.threshold_backward(gradient, hidden, 0)

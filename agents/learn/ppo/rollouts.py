@@ -155,7 +155,7 @@ def _advantages(
 ) -> NDArray[np.float32]:
     """Return generalised advantage estimates [steps, worlds]; ``values`` has a step more."""
     goes_on = (1.0 - dones).astype(np.float32)
-    errors = rewards + gamma * values[1:] * goes_on - values[:-1]
+    errors: Any = rewards + gamma * values[1:] * goes_on - values[:-1]
     weights = gamma * gae_lambda * goes_on
     latest = np.zeros(rewards.shape[1], np.float32)
     for step in range(len(rewards) - 1, -1, -1):

@@ -11,9 +11,9 @@ from helpers.states import portable_bytes
 VIEWS = [
     {},
     {"observation": "grid"},
-    {"landing": True},
     {"observation": "rgb", "size": 30, "grey": True, "stack": 3},
     {"observation": "dict", "size": 24, "channels": "last"},
+    {"landing": True},
 ]
 
 

@@ -114,7 +114,7 @@ def test_reproduce_prints_nothing_that_a_terminal_obeys(
     run.notes.write_text(json.dumps(notes))
     shutil.copy(run.model, run.start)
 
-    def train(experiment: Any, again: RunFolder) -> str:
+    def train(experiment: Any, again: RunFolder, **options: Any) -> str:
         again.add_notes(weights="5a95")
         return "finished"
 
@@ -150,7 +150,7 @@ def test_a_curve_without_a_finite_value_is_not_drawn() -> None:
 
 def test_a_page_shows_what_a_terminal_would_obey() -> None:
     facts: dict[str, Any] = {
-        **{"name": "\x1b[31m", "env_id": "a", "observation": "b", "training_levels": "\x07"},
+        **{"name": "\x1b[31m", "env_id": "a", "inputs": "b", "training_levels": "\x07"},
         **{"timesteps": 1, "models": [], "origin": [["\x1b[2J", "\x00"]], "curves": 0},
         **{"lineages": ["\x1b[32m"], "suites": [], "settings": ""},
     }
