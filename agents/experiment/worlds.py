@@ -6,6 +6,7 @@ import gymnasium as gym
 from gymnasium.vector import VectorEnv
 
 from ...envs.config import Config
+from ...envs.vector_env import MOST_WORLDS
 from .errors import SettingsError
 from .settings import Experiment
 
@@ -35,6 +36,9 @@ def make_worlds(
         SettingsError: the environment refuses its arguments, or so many worlds do not fit into
             memory.
     """
+    too_many = f"not enough memory for {num_worlds:,} worlds at once"
+    if num_worlds > MOST_WORLDS:
+        raise SettingsError(too_many)
     resolved = experiment.config if config is None else config
     arguments = {
         "copy": False,
@@ -53,4 +57,4 @@ def make_worlds(
     except (TypeError, ValueError, gym.error.Error) as error:
         raise SettingsError(f"{experiment.env_id} refuses the [env] table: {error}") from error
     except MemoryError:
-        raise SettingsError(f"not enough memory for {num_worlds:,} worlds at once") from None
+        raise SettingsError(too_many) from None

@@ -177,7 +177,7 @@ def test_a_wrong_setting_is_named_with_its_file_and_what_is_right(
         ("ppo.batch_size", "1000", ["'ppo.batch_size' (1000)"]),
         ("env.lives", "none", ["lives must be an integer", "'none'"]),
         # The nearest key, however far, was 'env_id'.
-        ("device", "cuda", ["unknown key 'device'; known are name,"]),
+        ("colour", "red", ["unknown key 'colour'; known are name,"]),
     ],
 )
 def test_a_wrong_override_is_blamed_on_the_command_line(
@@ -281,7 +281,7 @@ def test_an_experiment_knows_the_defaults_of_a_users_own_id(my_game: str) -> Non
     suites = ("evaluation.suites", '["named"]')
     experiment = load_experiment("quick", [("env_id", my_game), ("env.lives", "5"), suites])
     assert experiment.config == Config(
-        enemies=False, capsules=False, frame_skip=4, lives=5, life_penalty=1.0
+        enemies=False, capsules=False, frame_skip=4, lives=5, life_penalty=1.0, landing=True
     )
     names = [start.name for start in make_suites(experiment)["named"].starts]
     assert len(names) == 12

@@ -288,6 +288,7 @@ def facts_with(name: str) -> dict[str, Any]:
         "timesteps": 1,
         "models": [[name, 0, name, 1, "1 min", name, "abc"]],
         "origin": [[name, name]],
+        "lineages": [name],
         "curves": 0,
         "suites": [{"name": "x", "heading": name, "summaries": [[["a"], [name]]], "levels": []}],
         "settings": f"name = {name}\n```\n# {name}",
