@@ -118,7 +118,10 @@ def _write_model(arguments: argparse.Namespace, overrides: list[tuple[str, str]]
     looks = [(key, text) for key, text in overrides if _is_look(key)]
     # The network need not suit what the data set shows.
     any_network = [("network.features", "auto")] if looks else []
-    shown = model.run.experiment([*others, *looks, *any_network])
+    # Nor has every observation landings.
+    other_view = any(key == "env.observation" for key, _ in looks)
+    plain = [("env.landing", "false")] if other_view else []
+    shown = model.run.experiment([*others, *plain, *looks, *any_network])
     from ..learn.model import load_policy
 
     policy = load_policy(model, experiment)

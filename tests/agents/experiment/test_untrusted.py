@@ -227,7 +227,10 @@ def test_the_rebuilt_network_plays_as_the_unpickled_one(
     settings: dict[str, str], deterministic: bool, tmp_path: Path
 ) -> None:
     choice = ("evaluation.deterministic", str(deterministic).lower())
-    experiment = load_experiment("quick", [*settings.items(), ("output", str(tmp_path)), choice])
+    # Only vectors have landings.
+    plain = [("env.landing", "false"), ("ppo.batch_size", "512")]
+    words = [*plain, *settings.items(), ("output", str(tmp_path)), choice]
+    experiment = load_experiment("quick", words)
     run = RunFolder.create(experiment)
     worlds = make_worlds(experiment, 16)
     model = make_model(experiment, adapt(worlds))

@@ -179,7 +179,7 @@ def env_of(experiment: Experiment) -> Any:
     ("name", "value", "words"),
     [
         ("actions", np.int64([0, 1, 3]), "actions"),
-        ("observations", np.float32([[math.nan] * 226] * 4), "observations"),
+        ("observations", math.nan, "observations"),
         ("rewards", np.array([0.0, math.inf, 0.0]), "rewards"),
         ("actions", np.int64([0, 1]), "other lengths"),
     ],
@@ -200,7 +200,7 @@ def test_damaged_data_is_refused(
         "actions": np.zeros(3, np.int64),
         "rewards": np.zeros(3),
     }
-    arrays[name] = value
+    arrays[name] = np.full_like(arrays[name], value) if isinstance(value, float) else value
     episodes = iter([Episode(**arrays, terminated=True)])
     write_dataset("arkanoid/bad-v0", episodes, env, "nobody", "damaged")
     with pytest.raises(ValueError, match=words):
@@ -231,6 +231,7 @@ def test_mistakes_get_a_sentence_before_anything_is_played(
     wrong = ["--imitation.dataset", "arkanoid/nothing-v0"]
     assert "no such data set" in sentence([*train, *wrong], capsys)
     seen = ["--imitation.dataset", ID, "--env.observation", "grid", "--network.features", "auto"]
+    seen += ["--env.landing", "false"]
     assert "its observations are float32" in sentence([*train, *seen], capsys)
     acted = ["--imitation.dataset", ID, "--env.actions", "discrete6"]
     assert "its actions are one of 3" in sentence([*train, *acted], capsys)

@@ -235,6 +235,7 @@ def test_the_network_suits_the_observation(
 ) -> None:
     """Trained, saved and loaded again, it plays as it did."""
     options = [("network.features", "auto"), ("training.timesteps", "1024")]
+    options += [("env.landing", "false")]
     experiment = small(tmp_path, *options, *overrides)
     _, run = trained(experiment)
     worlds = make_worlds(experiment, 4)

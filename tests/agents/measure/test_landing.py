@@ -132,7 +132,7 @@ def test_a_network_with_landings_is_trained_saved_and_loaded(tmp_path: Path) -> 
 
 def test_what_an_agent_sees_is_said() -> None:
     def inputs(*settings: tuple[str, str]) -> str:
-        return load_experiment("quick", list(settings)).inputs
+        return load_experiment("quick", [("env.landing", "false"), *settings]).inputs
 
     assert inputs() == "vector"
     assert inputs(("env.observation", "grid"), ("network.features", "auto")) == "grid"

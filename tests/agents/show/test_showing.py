@@ -72,6 +72,7 @@ def test_a_game_shown_tick_by_tick_is_the_game_that_is_evaluated() -> None:
 
 def test_stacked_pictures_and_sticky_actions_are_not_shown_tick_by_tick() -> None:
     stacked = [("env.observation", "rgb"), ("env.stack", "2"), ("network.features", "auto")]
+    stacked += [("env.landing", "false")]
     assert not can_be_smooth(load_experiment("quick", stacked))
     assert not can_be_smooth(load_experiment("quick", [("env.sticky_action", "0.1")]))
     assert can_be_smooth(load_experiment("quick"))
