@@ -47,6 +47,7 @@ _PICTURES = ("size", "grey", "stack", "channels")
 SEEN = ("observation", "landing", *_PICTURES, "episodic_life")
 MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
+MOST_WORLDS = 1 << 30  # of the largest pictures: more are no size of an array
 MOST_DECISIONS = 10**12
 
 

@@ -14,7 +14,7 @@ from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .batch.starts import set_start
 from .batch.stepping import tabulate_outcomes
 from .checks import check_boolean, check_integer, check_seeds
-from .config import Config
+from .config import MOST_WORLDS, Config
 from .hints import BATCH_KEYWORDS
 from .interface import (
     SpecWithLimit,
@@ -52,7 +52,6 @@ _MODES = {
     AutoresetMode.NEXT_STEP: Autoreset.NEXT_STEP,
     AutoresetMode.SAME_STEP: Autoreset.SAME_STEP,
 }
-MOST_WORLDS = 1 << 30  # of the largest pictures: more are no size of an array
 
 
 class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], Any]):

@@ -5,8 +5,7 @@ from typing import Any
 import gymnasium as gym
 from gymnasium.vector import VectorEnv
 
-from ...envs.config import Config
-from ...envs.vector_env import MOST_WORLDS
+from ...envs.config import MOST_WORLDS, Config
 from .errors import SettingsError
 from .settings import Experiment
 

@@ -1,5 +1,6 @@
 """Prioritised level replay: which levels a training chooses, and that a resumed one does, too."""
 
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -140,9 +141,10 @@ def test_a_stopped_and_resumed_run_chooses_as_an_undisturbed_one(
     train(experiment, whole)
     first = []
 
-    def stop_once(step: int, means: dict[str, float]) -> str | None:
+    def stop_once(step: int, means: dict[str, float]) -> None:
         first.append(step)
-        return INTERRUPTED if len(first) == 1 else None
+        if len(first) == 1:
+            signal.raise_signal(signal.SIGINT)
 
     assert train(experiment, stopped, on_measure=stop_once) == INTERRUPTED
     train(experiment, stopped, resumed=True)

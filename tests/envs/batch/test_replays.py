@@ -290,7 +290,7 @@ def test_commands_that_no_player_could_give_are_refused(command):
 
 
 @pytest.mark.parametrize(
-    "fields", [{"start": 3}, {"start_round": 0}, {"start_difficulty": 1e9}, {"start_seed": -1}]
+    "fields", [{"start": 4}, {"start_round": 0}, {"start_difficulty": 1e9}, {"start_seed": -1}]
 )
 def test_a_beginning_that_no_game_has_is_refused(fields):
     replay = record(10)
