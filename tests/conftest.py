@@ -1,5 +1,6 @@
 """What all tests share: the repository's root is the package, not a folder of tests."""
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -27,5 +28,8 @@ def pytest_configure(config: pytest.Config) -> None:
     # On a busy machine a correct test may take long.
     settings.register_profile("no deadline", deadline=None)
     settings.load_profile("no deadline")
+    # A shell's jobs in the background ignore Ctrl-C, which some tests press.
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     # Not a plain hook: those of a conftest are asked about what lies below its own folder only.
     config.pluginmanager.register(RootIsNotATestPackage())

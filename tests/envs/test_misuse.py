@@ -130,7 +130,7 @@ def test_a_single_game_takes_no_mask():
     env = ArkanoidEnv()
     with pytest.raises(ValueError, match=r"reset_mask'. is for vector environments"):
         env.reset(options={"reset_mask": np.array([True])})
-    with pytest.raises(ValueError, match=r"known: level, seed, difficulty$"):
+    with pytest.raises(ValueError, match=r"known: level, seed, repeat, difficulty$"):
         env.reset(options={"xyz": 1})
 
 

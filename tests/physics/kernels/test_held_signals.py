@@ -2,6 +2,7 @@
 
 import signal
 import threading
+from pathlib import Path
 
 import pytest
 from arkanoid.physics.kernels import kernel
@@ -89,8 +90,10 @@ class Interrupter(event.Listener):  # type: ignore[misc]
 
 
 @pytest.mark.skipif(is_interpreted(), reason="nothing is compiled")
-def test_ctrl_c_waits_for_the_compiler() -> None:
+def test_ctrl_c_waits_for_the_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """LLVM's lock stayed locked where it came at a bad moment, and other threads hung."""
+    # Otherwise an earlier run has left the compiled kernel.
+    monkeypatch.setenv("ARKANOID_CACHE_DIR", str(tmp_path))
 
     @kernel
     def double(x: float) -> float:
