@@ -10,6 +10,7 @@ import json
 import struct
 import sys
 import zlib
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -68,9 +69,10 @@ def change(rng: np.random.Generator, head: Any) -> tuple[Any, ...]:
     elif way == 1 and type(part[last]) in (int, float):
         part[last] += type(part[last])(rng.integers(-2, 3))
     elif way == 2 and isinstance(part, dict):
-        part[str(rng.integers(9))] = part[last]
+        part[str(rng.integers(9))] = deepcopy(part[last])
     else:
-        part[last] = ODD[rng.integers(len(ODD))]
+        # A copy: a list in itself is no JSON.
+        part[last] = deepcopy(ODD[rng.integers(len(ODD))])
     return (*path, last)
 
 
