@@ -1,10 +1,8 @@
 """The forms of actions: what is taken, what is clipped, what is refused and in which words."""
 
-import re
-
 import numpy as np
 import pytest
-from arkanoid.envs import ArkanoidEnv, ArkanoidVectorEnv
+from arkanoid.envs import ArkanoidEnv
 from arkanoid.envs.actions import COMMANDS, action_meanings
 from gymnasium.wrappers import RescaleAction
 
@@ -65,26 +63,6 @@ def test_what_is_not_velocity_and_fire_is_refused_and_the_space_named(action):
     env.reset(seed=0)
     with pytest.raises(TypeError, match=r"is not in Box\(-1.0, 1.0, \(2,\), float32\)"):
         env.step(action)
-
-
-def test_what_is_no_array_is_refused_and_the_space_named():
-    """Torch and NumPy said what they could not do, and nobody what was wanted."""
-    torch = pytest.importorskip("torch")
-    ragged = [[[0], [1, 2]], [[0, 0], [1]]]
-    tensor = torch.zeros(2, requires_grad=True)
-    box, words = "Box(-1.0, 1.0, (2,), float32)", "Discrete(6)"
-    for env, wrong, space in (
-        (ArkanoidEnv(actions="box"), [*ragged, tensor], box),
-        (ArkanoidEnv(), [*ragged, tensor], words),
-        (ArkanoidVectorEnv(2, actions="box"), [*ragged, tensor.expand(2, 2)], box),
-        (ArkanoidVectorEnv(2), [*ragged, tensor], words),
-    ):
-        env.reset(seed=0)
-        before = env.snapshot()
-        for action in wrong:
-            with pytest.raises(TypeError, match=rf"is not in {re.escape(space)}"):
-                env.step(action)
-        assert env.snapshot() == before
 
 
 @pytest.mark.parametrize(

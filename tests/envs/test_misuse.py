@@ -1,5 +1,7 @@
 """Environments that are used wrongly: the mistake is named, and nothing goes on behind it."""
 
+import re
+
 import arkanoid  # noqa: F401
 import gymnasium as gym
 import numpy as np
@@ -283,3 +285,21 @@ def test_replaced_recorders_do_not_pile_up():
     assert list(env._batch.listeners) == [recorder]
     del recorder
     assert len(env._batch.listeners) == 0
+
+
+@pytest.mark.parametrize("make", [ArkanoidEnv, lambda **keywords: ArkanoidVectorEnv(2, **keywords)])
+@pytest.mark.parametrize(
+    ("actions", "space"),
+    [("box", "Box(-1.0, 1.0, (2,), float32)"), ("discrete6", "Discrete(6)")],
+)
+def test_what_is_no_array_is_refused_and_the_space_named(make, actions, space):
+    """Torch and NumPy said what they could not do, and nobody what was wanted."""
+    torch = pytest.importorskip("torch")
+    env = make(actions=actions)
+    env.reset(seed=0)
+    before = env.snapshot()
+    tensor = torch.zeros(2, requires_grad=True)
+    for action in ([[0], [1, 2]], [[0, 0], [1]], tensor, tensor.expand(2, 2)):
+        with pytest.raises(TypeError, match=rf"is not in {re.escape(space)}"):
+            env.step(action)
+    assert env.snapshot() == before
