@@ -4,10 +4,10 @@ import contextlib
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 INTERRUPTED = "interrupted"
 
@@ -45,16 +45,23 @@ def noted_interrupts() -> Iterator[list[int]]:
         noted.append(number)
         raise KeyboardInterrupt
 
+    if signal.getsignal(signal.SIGINT) not in (_end, signal.default_int_handler):
+        yield noted
+        return
+    with handled_interrupts(note):
+        yield noted
+
+
+@contextlib.contextmanager
+def handled_interrupts(handler: Callable[[int, FrameType | None], Any] | int) -> Iterator[None]:
+    """Let Ctrl-C inside the block call a handler; outside the main thread, change nothing."""
     before = signal.getsignal(signal.SIGINT)
-    if before not in (_end, signal.default_int_handler):
-        yield noted
-        return
     try:
-        signal.signal(signal.SIGINT, note)
+        signal.signal(signal.SIGINT, handler)
     except ValueError:  # only the main thread may handle signals
-        yield noted
+        yield
         return
     try:
-        yield noted
+        yield
     finally:
         signal.signal(signal.SIGINT, before)

@@ -23,7 +23,7 @@ class GameStatistics(BaseCallback):
 
     def _on_rollout_end(self) -> None:
         for key in FINAL_KEYWORDS + SUMMED_KEYWORDS:
-            mean = _recent_mean(self.model, key)
+            mean = recent_mean(self.model, key)
             if mean is not None:
                 self.logger.record(f"rollout/ep_{key}_mean", mean)
 
@@ -53,7 +53,7 @@ class ProgressBar(BaseCallback):
         return True
 
     def _on_rollout_end(self) -> None:
-        means = {name: _recent_mean(self.model, key) for key, name in _SHOWN.items()}
+        means = {name: recent_mean(self.model, key) for key, name in _SHOWN.items()}
         shown = {name: f"{mean:.2f}" for name, mean in means.items() if mean is not None}
         self._bar.set_postfix(shown, refresh=False)
 
@@ -100,7 +100,7 @@ class StopRequest(BaseCallback):
         return self.reason is None and not self.interrupted
 
 
-def _recent_mean(model: Any, key: str) -> float | None:
+def recent_mean(model: Any, key: str) -> float | None:
     """Return the mean of an episode statistic, or None before the first episode has ended."""
     episodes = model.ep_info_buffer
     return float(np.mean([episode[key] for episode in episodes])) if episodes else None

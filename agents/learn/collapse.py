@@ -25,6 +25,7 @@ from ..experiment.worlds import make_worlds
 from ..measure.baselines import NoOp, RandomPolicy
 from ..measure.episodes import play_episodes
 from ..measure.policy import Policy
+from .callbacks import recent_mean
 
 ALWAYS = 0.99  # as often, or as probable, counts as always
 CERTAIN = 0.05  # an entropy below this part of the largest one counts as certain
@@ -90,7 +91,7 @@ class CollapseWatch(BaseCallback):
             return f"{100 * share:.1f} % of its actions are the same"
         if self._entropy is None or self._entropy > CERTAIN * math.log(self._taken.size):
             return None
-        mean = _mean_return(self.model)
+        mean = recent_mean(self.model, "r")
         if mean is None:
             return None
         if self._floor is None:
@@ -101,12 +102,6 @@ class CollapseWatch(BaseCallback):
             f"it is certain of its actions, but its return of {mean:.3g} is no more than the "
             f"{self._floor:.3g} of doing nothing or playing at random"
         )
-
-
-def _mean_return(model: Any) -> float | None:
-    """Return the mean return of the latest episodes, or None before the first has ended."""
-    episodes = model.ep_info_buffer
-    return float(np.mean([episode["r"] for episode in episodes])) if episodes else None
 
 
 def _blind_return(experiment: Experiment) -> float:
@@ -148,7 +143,9 @@ class Watched:
             seen = self._network.obs_to_tensor(observations)[0]
             with torch.no_grad():
                 probs = self._network.get_distribution(seen).distribution.probs
-            self._certainty[worlds] += np.stack([probs.max(1)[0].numpy(), np.ones(len(worlds))], 1)
+            self._certainty[worlds] += np.stack(
+                [probs.max(1)[0].cpu().numpy(), np.ones(len(worlds))], 1
+            )
         self._calls += 1
         return actions
 

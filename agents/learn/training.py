@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 from typing import Any
 
@@ -23,6 +23,7 @@ from ..experiment.runs import RunFolder
 from ..experiment.seeds import Purpose, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
+from ..interrupts import handled_interrupts
 from ..measure.episodes import adapt
 from .callbacks import GameStatistics, ProgressBar, StopRequest
 from .checkpoints import Checkpoints, resume
@@ -246,8 +247,7 @@ class _Told(KVWriter):
         """Nothing: whoever is told may want to know more after the training."""
 
 
-@contextmanager
-def _on_interrupt(request: Callable[[], None]) -> Iterator[None]:
+def _on_interrupt(request: Callable[[], None]) -> AbstractContextManager[None]:
     """Call ``request`` at the first Ctrl-C inside the block."""
     previous = signal.getsignal(signal.SIGINT)
 
@@ -255,13 +255,4 @@ def _on_interrupt(request: Callable[[], None]) -> Iterator[None]:
         signal.signal(signal.SIGINT, previous)
         request()
 
-    try:
-        signal.signal(signal.SIGINT, handle)
-    except ValueError:
-        # Only the main thread may handle signals.
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)
+    return handled_interrupts(handle)

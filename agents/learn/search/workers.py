@@ -8,11 +8,12 @@ import queue
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ...experiment.errors import SettingsError
 from ...experiment.files import cause
+from ...interrupts import handled_interrupts
 from .board import Board
 from .study import JOURNAL, count_ended, open_study
 from .trials import Search, run_trial
@@ -109,7 +110,8 @@ class _Workers:
             KeyboardInterrupt: Ctrl-C; all have ended then.
         """
         try:
-            with _without_interrupts():
+            # The processes ignore Ctrl-C until they handle it.
+            with handled_interrupts(signal.SIG_IGN):
                 for process in self._processes:
                     process.start()
             while any(process.is_alive() for process in self._processes):
@@ -205,17 +207,3 @@ def _interrupt(process: Any) -> None:
         process.terminate()
     else:
         os.kill(process.pid, signal.SIGINT)
-
-
-@contextlib.contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Let processes that are started inside the block ignore Ctrl-C until they handle it."""
-    try:
-        previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    except ValueError:  # only the main thread may
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)

@@ -2,7 +2,7 @@
 
 import copy
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
@@ -12,6 +12,27 @@ from arkanoid.physics.world.states import Stepper
 
 def make_world() -> World:
     return World([Body(Particle(1.0), (0.0, 0.0), (1.0, 0.0), mass=1.0)])
+
+
+def step_while_others_call(
+    world: Any,
+    calls: Sequence[Callable[[], Any]],
+    attempt: Callable[[Any], None],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Step a world; in the middle of it, another thread attempts each of the calls."""
+    plain = Stepper.step
+
+    def meddle(stepper: Stepper, dt: float, steps: int) -> Any:
+        for call in calls:
+            thread = threading.Thread(target=attempt, args=(call,))
+            thread.start()
+            thread.join()
+        return plain(stepper, dt, steps)
+
+    monkeypatch.setattr(Stepper, "step", meddle)
+    world.step(1.0)
+    monkeypatch.undo()
 
 
 @pytest.mark.parametrize("threads", [0, 1, 2])
@@ -31,18 +52,8 @@ def test_a_second_thread_is_refused_while_a_step_runs(
         except RuntimeError as error:
             errors.append(str(error))
 
-    plain = Stepper.step
-
-    def meddle(stepper: Stepper, dt: float, steps: int) -> Any:
-        for call in (lambda: world.step(1.0), world.snapshot, lambda: world.restore(snapshot)):
-            thread = threading.Thread(target=attempt, args=(call,))
-            thread.start()
-            thread.join()
-        return plain(stepper, dt, steps)
-
-    monkeypatch.setattr(Stepper, "step", meddle)
-    world.step(1.0)
-    monkeypatch.undo()
+    calls = (lambda: world.step(1.0), world.snapshot, lambda: world.restore(snapshot))
+    step_while_others_call(world, calls, attempt, monkeypatch)
     assert len(errors) == 3 * max(1, threads)
     assert all("one thread at a time" in error for error in errors)
     assert world.positions.reshape(-1, 2)[0, 0] == 1.0
@@ -78,18 +89,7 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
             call()
         errors.append(str(caught.value))
 
-    plain = Stepper.step
-
-    def meddle(stepper: Stepper, dt: float, steps: int) -> Any:
-        for call in calls:
-            thread = threading.Thread(target=attempt, args=(call,))
-            thread.start()
-            thread.join()
-        return plain(stepper, dt, steps)
-
-    monkeypatch.setattr(Stepper, "step", meddle)
-    world.step(1.0)
-    monkeypatch.undo()
+    step_while_others_call(world, calls, attempt, monkeypatch)
     assert len(errors) == len(calls)
     assert all("one thread at a time" in error for error in errors)
     assert world.positions.tolist() == [[1.0, 0.0], [9.0, 0.0]]
