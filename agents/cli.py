@@ -14,7 +14,7 @@ from typing import Any
 
 from gymnasium.error import DependencyNotInstalled
 
-from .. import __version__
+from ..version import __version__
 from .experiment.errors import SettingsError
 from .experiment.files import cause, printable
 from .interrupts import INTERRUPTED, noted_interrupts

@@ -9,7 +9,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from ... import __version__
+from ...version import __version__
 
 # The packages on which the numbers of a training run depend.
 PACKAGES = ("gymnasium", "llvmlite", "numba", "numpy", "stable_baselines3", "torch")
