@@ -3,8 +3,9 @@
 from collections.abc import Collection
 from difflib import get_close_matches
 
-# Keywords of `ArkanoidVectorEnv` that are no part of a `Config`.
+# Keywords of the vector environments that are no part of a `Config`.
 BATCH_KEYWORDS = (
+    "device",
     "render_mode",
     "render_size",
     "autoreset_mode",
@@ -32,6 +33,7 @@ _WHERE = {
     "seed": "reset(seed=...) takes it",
     "num_envs": "gym.make_vec(...) makes several games, ArkanoidVectorEnv(num_envs) does",
     "autoreset_mode": "gym.make_vec(...) takes it, for several games",
+    "device": "gym.make_vec(...) takes it, for several games",
     "copy": "gym.make_vec(...) takes it, for several games",
     "threads": "gym.make_vec(...) takes it, for several games",
 }

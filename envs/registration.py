@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _PACKAGE = __name__.rpartition(".")[0]
 _ENTRY_POINT = f"{_PACKAGE}.arkanoid_env:ArkanoidEnv"
-_VECTOR_ENTRY_POINT = f"{_PACKAGE}.vector_env:ArkanoidVectorEnv"
+_VECTOR_ENTRY_POINT = f"{__name__}:make_vector_env"
 
 # The simplest to learn.
 _LITE: dict[str, Any] = {"actions": "discrete3", "capsules": False, "enemies": False}
@@ -41,6 +41,21 @@ GAMES: dict[str, dict[str, Any]] = {
     "ArkanoidLitePixels-v0": _LITE | _PIXELS,
     "ArkanoidLiteNoFrameskip-v0": _LITE | _NO_FRAMESKIP,
 }
+
+
+def make_vector_env(num_envs: int = 1, device: Any = None, **keywords: Any) -> Any:
+    """Return an `ArkanoidVectorEnv`, or with a device an `ArkanoidTensorVectorEnv`.
+
+    Their keywords, and what they raise, are written there.
+    """
+    if device is not None:
+        # Imported on demand: it imports torch.
+        from .tensor_vector_env import ArkanoidTensorVectorEnv
+
+        return ArkanoidTensorVectorEnv(device, num_envs, **keywords)
+    from .vector_env import ArkanoidVectorEnv
+
+    return ArkanoidVectorEnv(num_envs, **keywords)
 
 
 def register_environments() -> None:
@@ -90,6 +105,8 @@ def _is_ours(spec: EnvSpec) -> bool:
     if entry_point == _VECTOR_ENTRY_POINT:
         return True  # without importing the kernels
     creator = load_env_creator(entry_point) if isinstance(entry_point, str) else entry_point
+    if creator is make_vector_env:
+        return True
     from .vector_env import ArkanoidVectorEnv
 
     return isinstance(creator, type) and issubclass(creator, ArkanoidVectorEnv)

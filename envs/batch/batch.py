@@ -133,7 +133,7 @@ class Batch:
             raise ValueError("a world without random numbers can't have played")
         if seeded.any():
             self._check(*(part[seeded] for part in state))
-        self._adopt(*state)
+        self.adopt(*state)
 
     @property
     def num_worlds(self) -> int:
@@ -285,7 +285,7 @@ class Batch:
         for records, found in zip(aligned, (worlds, outcomes), strict=True):
             _bytes_of(records)[:] = _bytes_of(found)
         self._check(*aligned, observations)
-        self._adopt(*aligned, observations)
+        self.adopt(*aligned, observations)
 
     def _check(self, worlds: Worlds, outcomes: Outcomes, observations: NDArray[Any]) -> None:
         """Raise a ValueError if no play leads to this state, see `restore`."""
@@ -301,7 +301,7 @@ class Batch:
                 "one would have begun: restore it in an environment of another mode"
             )
 
-    def _adopt(self, worlds: Worlds, outcomes: Outcomes, observations: NDArray[Any]) -> None:
+    def adopt(self, worlds: Worlds, outcomes: Outcomes, observations: NDArray[Any]) -> None:
         """Take a state that was checked."""
         self._ready = False
         self.changes += 1

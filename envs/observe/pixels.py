@@ -82,20 +82,25 @@ def _copy_picture(row: Any, shown: Any, channel: int, source: int, target: int) 
 
 
 class PixelObserver:
-    """`Observer` of pictures, uint8 [n, stack * channels, height, width], or the channels last."""
+    """`Observer` of pictures, uint8 [n, stack * channels, height, width], or the channels last.
+
+    Attributes:
+        sheets: the `Scenery` of each channel.
+        stack: how many pictures an observation has; channels_last: where its channels are.
+    """
 
     def __init__(self, config: Config, num_worlds: int) -> None:
         """Make the arrays, and draw what is the same in all pictures."""
         height, width = config.picture_size
-        self._sheets = channel_sheets(height, width, config.grey)
-        self._stack = config.stack
-        self._channels_last = config.channels == "last"
+        self.sheets = channel_sheets(height, width, config.grey)
+        self.stack = config.stack
+        self.channels_last = config.channels == "last"
         places = STACKS_PER_ROW * config.stack if config.stack > 1 else 1
-        channels = len(self._sheets)
+        channels = len(self.sheets)
         self._row = np.zeros((num_worlds, places, channels, height, width), np.uint8)
         self._drawn = np.zeros((num_worlds, places, channels), Drawn)
-        self._place(self._stack - 1)
-        count = self._stack * channels
+        self._place(self.stack - 1)
+        count = self.stack * channels
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(0, 255, self.observations.shape[1:], np.uint8)
         names = ("grey",) if config.grey else ("red", "green", "blue")
@@ -106,8 +111,8 @@ class PixelObserver:
     def advance(self) -> None:
         """Move the stack by one place, or from the row's end to its beginning."""
         previous = self._newest
-        if self._stack > 1:
-            self._place(previous + 1 if previous + 1 < self._row.shape[1] else self._stack - 1)
+        if self.stack > 1:
+            self._place(previous + 1 if previous + 1 < self._row.shape[1] else self.stack - 1)
             self._moved = max(0, previous + 1 - self._newest)
 
     def check(self, observations: NDArray[Any]) -> None:
@@ -134,8 +139,8 @@ class PixelObserver:
         places = lines[..., np.newaxis], lines, drawn
 
         def observe(mask: Mask) -> None:
-            window = self._newest + 1 - self._stack, self._newest, self._moved
-            for channel, sheets in enumerate(self._sheets):
+            window = self._newest + 1 - self.stack, self._newest, self._moved
+            for channel, sheets in enumerate(self.sheets):
                 draw_pictures(*always, mask, sheets, *places, channel, *window)
 
         return observe
@@ -144,12 +149,12 @@ class PixelObserver:
         """Let the stack's newest picture be at a place of the row."""
         self._newest = newest
         self._moved = 0
-        channels = len(self._sheets)
-        window = slice((newest + 1 - self._stack) * channels, (newest + 1) * channels)
+        channels = len(self.sheets)
+        window = slice((newest + 1 - self.stack) * channels, (newest + 1) * channels)
         pictures = self._row.reshape(len(self._row), -1, *self._row.shape[3:])
         shown = pictures[:, window]
         self.observations: NDArray[np.uint8] = (
-            np.moveaxis(shown, 1, -1) if self._channels_last else shown
+            np.moveaxis(shown, 1, -1) if self.channels_last else shown
         )
 
 

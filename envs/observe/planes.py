@@ -142,7 +142,7 @@ _SHARD_MOTION = _EXTRAS["shard_motion"].start * PLANE
 _MOVING = _PADDLE
 MAX_MARKS = 256
 # Instead of a number of marks: any cell may be filled, and all are erased.
-_ANY_CELL = -1
+ANY_CELL = -1
 
 
 class GridObserver:
@@ -177,7 +177,7 @@ class GridObserver:
     def recall(self, observations: NDArray[Any]) -> None:
         """Go on from these grids."""
         self.observations[:] = observations
-        self._marks[:, 0] = _ANY_CELL
+        self._marks[:, 0] = ANY_CELL
         forget_shown(self._shown)
 
     def clone(self) -> "GridObserver":
@@ -204,7 +204,7 @@ def observe_grids(
     Args:
         rows: float32 [n, planes * PLANE].
         marks: int32 [n, 1 + MAX_MARKS], the number of places to be erased, and these; or
-            `_ANY_CELL`.
+            `ANY_CELL`.
         shown: int64 [n, 3], what the rows show.
         mask: bool [n].
     """
@@ -218,7 +218,7 @@ def _observe_grid(
     world: WorldRecord, rules: RulesRecord, row: Any, marks: Any, shown: ShownRow
 ) -> None:
     """Write a world's observation into its row; the bricks only if they have changed."""
-    if marks[0] == _ANY_CELL:
+    if marks[0] == ANY_CELL:
         for place in range(_MOVING, row.shape[0]):
             row[place] = 0.0
     for index in range(marks[0]):

@@ -172,22 +172,27 @@ _ENEMIES, _ENEMIES_SIZE = 4 * _ENEMY, 4 * (FULL_LENGTH - _ENEMY)
 
 
 class VectorObserver:
-    """`Observer` of vectors, float32 [n, k]."""
+    """`Observer` of vectors, float32 [n, k].
+
+    Attributes:
+        plain_length: of the core parts, or of core and extra parts.
+        shows_landings: whether there are landings; landings_start: where they begin.
+    """
 
     def __init__(self, config: Config, num_worlds: int) -> None:
         """Make the array; games without capsules and enemies have no numbers for them."""
         full = config.capsules or config.enemies
         length = FULL_LENGTH if full else CORE_LENGTH
         self.layout = _CORE | _EXTRAS if full else dict(_CORE)
-        self._without_pay = length
+        self.plain_length = length
         if shows_pay(config):
             self.layout |= slices(PAY_PARTS, length)
             length += PAY_LENGTH
-        self._without_landings = length
+        self.landings_start = length
         if config.landing:
             self.layout |= slices(LANDING_PARTS, length)
             length += LANDING_LENGTH
-        self._shows_landings = config.landing
+        self.shows_landings = config.landing
         # Whether Box is generic depends on Gymnasium's version.
         self.space: Any = spaces.Box(-1.0, 1.0, (length,), np.float32)
         self.observations: NDArray[np.float32] = zeros_in_lines((num_worlds, length), np.float32)
@@ -216,12 +221,12 @@ class VectorObserver:
         """Return what observes a share of the worlds."""
         rows, shown = self.observations[share], self._shown[share]
         seen = worlds[share], rules, rows
-        vectors = partial(observe_vectors, *seen, shown, self._without_pay)
-        if not self._shows_landings:
+        vectors = partial(observe_vectors, *seen, shown, self.plain_length)
+        if not self.shows_landings:
             return vectors
         # No two threads may share it.
         scratch = zeros_in_lines((1,), World)
-        landings = partial(observe_landings, *seen, self._without_landings, scratch)
+        landings = partial(observe_landings, *seen, self.landings_start, scratch)
 
         def observe(mask: Mask) -> None:
             vectors(mask)

@@ -5,6 +5,7 @@ no Python object and, while stepping, uses only ``+ - * / sqrt``, so that it giv
 compiled or interpreted (``NUMBA_DISABLE_JIT=1``) on every machine.
 """
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -29,6 +30,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 # Numba says that it is typed and hardly is, differently in every release.
 _njit = cast(Any, numba).njit
+# The variable that makes this process compile all kernels afresh, for `portable`.
+UNCACHED = "ARKANOID_UNCACHED"
 # NumPy's error model: a division by zero gives inf or nan, not an exception.
 _ALWAYS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
@@ -80,6 +83,8 @@ def _compile(function: F, **options: bool) -> F:
     hold_signals(compiled)
     # The options are a part of the key: Numba's own does not hold them.
     compiler = f"{compiler_state()} {sorted(options.items())}"
+    if UNCACHED in os.environ:
+        return compiled
     folder = writable_folder(Path(function.__code__.co_filename), compiler)
     if folder is not None:
         cache_in(folder, compiled)

@@ -12,6 +12,11 @@ def say_compiling() -> None:
     _say_once("compiling kernels for this machine (once; about half a minute) ...")
 
 
+def say_compiling_for(machines: str) -> None:
+    """Say that the wait is for the compiler, which works for other machines."""
+    _say_once(f"compiling kernels for {machines} (once; about a minute) ...")
+
+
 def say_unwritable(folder: Path, error: OSError) -> None:
     """Say that a cache folder cannot be written, and what to do about it."""
     say_uncached(f"{folder} cannot be written ({error.strerror})")

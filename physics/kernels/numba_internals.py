@@ -17,7 +17,7 @@ has one test for each part, which says what is missing and where it is used:
 ``FunctionCache._cache_file``       to put our files in place of Numba's
 ``serialize.dumps``                 to write them
 ``event`` ``numba:compile``         to notice that the compiler is at work
-``intrinsic, arrayobj``             to make an array that counts no references
+``intrinsic, arrayobj``             to make arrays that count no references
 ==================================  ================================================================
 """
 
@@ -200,3 +200,29 @@ def borrowed_view(typing_context: Any, block: Any, start: Any, count: Any, dtype
         return view._getvalue()
 
     return array_type(block, types.intp, types.intp, dtype), generate
+
+
+@intrinsic
+def addressed_array(typing_context: Any, address: Any, shape: Any, dtype: Any) -> Any:
+    """Return a contiguous array that begins at an address."""
+    array_type = types.Array(dtype.dtype, shape.count, "C")
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        view = make_array(array_type)(context, builder)
+        item = context.get_data_type(array_type.dtype)
+        size = context.get_constant(types.intp, context.get_abi_sizeof(item))
+        lengths = [builder.extract_value(arguments[1], axis) for axis in range(shape.count)]
+        strides = [size]
+        for length in reversed(lengths[1:]):
+            strides.insert(0, builder.mul(strides[0], length))
+        populate_array(
+            view,
+            data=builder.inttoptr(arguments[0], view.data.type),
+            shape=lengths,
+            strides=strides,
+            itemsize=size,
+            meminfo=None,
+        )
+        return view._getvalue()
+
+    return array_type(types.intp, shape, dtype), generate

@@ -1,0 +1,236 @@
+"""`ArkanoidTensorVectorEnv`: many games whose observations and results are tensors of torch."""
+
+from typing import Any
+
+import numpy as np
+import torch
+from gymnasium.error import ResetNeeded
+from numpy.typing import NDArray
+from torch import Tensor
+
+from .batch.batch import Autoreset
+from .state import INFO_FIELDS, Worlds
+from .tensors.batch import TensorBatch
+from .vector_env import ArkanoidVectorEnv
+
+
+class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
+    """`ArkanoidVectorEnv` with its worlds on a graphics card, or on this processor, as tensors.
+
+    Each game is the same, bit for bit. Observations, rewards, ends and infos are tensors on the
+    device, and so may actions be; a step does not wait for the device. What differs:
+
+    - An illegal action would have to be waited for. So it stands still, and `illegal_actions`
+      counts it.
+    - A world whose episode is over, in mode ``"Disabled"``, stays as it is until its reset, with a
+      reward of 0.
+    - In mode ``"SameStep"``, ``final_obs`` is one tensor, of which ``_final_obs`` says which rows
+      are meant; they are in each step's infos, whether an episode has ended or not.
+    - Resets by `reset`, snapshots and frames go through this processor, and take their time.
+    - `record` is not there: replays are made by the other class.
+
+    Args:
+        device: ``"cuda"``, ``"cuda:1"``, ... or ``"cpu"``.
+        num_envs: the number of worlds.
+        copy: whether `step` returns fresh tensors. With False it returns the same ones each time:
+            do not write into them.
+        **keywords: as for `ArkanoidVectorEnv`.
+
+    Raises:
+        ImportError: a package is missing.
+        RuntimeError: there is no such card, or it is too old.
+        TypeError, ValueError: a keyword is unknown or its value is illegal.
+        MemoryError: there is no room for so many worlds.
+    """
+
+    def __init__(self, device: str | torch.device, num_envs: int = 1, **keywords: Any) -> None:
+        self.device = read_device(device)
+        super().__init__(num_envs, **keywords)
+        try:
+            self._tensors = TensorBatch(self._batch, self.device)
+        except torch.OutOfMemoryError as error:
+            raise MemoryError(
+                f"num_envs={num_envs} worlds do not fit into the memory of {self.device}"
+            ) from error
+        self._was_reset = np.zeros(num_envs, np.bool_)
+        self._owners = torch.ones(num_envs, dtype=torch.bool, device=self.device)
+
+    @property
+    def illegal_actions(self) -> Tensor:
+        """How many illegal actions each world was given, int32 [n]."""
+        return self._tensors.illegal
+
+    def reset(
+        self, *, seed: Any = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode in every world, or in those of a mask, as `ArkanoidVectorEnv.reset`.
+
+        The mask may be a tensor.
+        """
+        mask = self._everywhere
+        if isinstance(options, dict) and "reset_mask" in options:
+            mask = options["reset_mask"]
+            if isinstance(mask, Tensor):
+                mask = mask.cpu().numpy()
+            options = {**options, "reset_mask": mask}
+        with self._on_host():
+            _, infos = super().reset(seed=seed, options=options)
+        self._was_reset |= mask
+        return self._seen(), self._as_tensors(infos)
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """Play one decision in every world.
+
+        Args:
+            actions: integers [n], or velocity and fire, [n, 2]: a tensor, or what torch makes one
+                of.
+
+        Returns:
+            Observations [n, ...]; rewards, float64 [n]; terminated and truncated, bool [n]; infos.
+
+        Raises:
+            TypeError, ValueError: the actions have another form.
+            gymnasium.error.ResetNeeded: a world was never reset.
+        """
+        if not self._was_reset.all():
+            never = np.flatnonzero(~self._was_reset)[:8].tolist()
+            raise ResetNeeded(f"call reset() before the first step(): worlds {never} had none")
+        tensors = self._tensors
+        tensors.step(actions)
+        terminated, truncated = self._own(tensors.terminated), self._own(tensors.truncated)
+        infos: dict[str, Any] = {}
+        if self._mode is Autoreset.SAME_STEP:
+            infos = self._final_parts(terminated | truncated)
+        infos |= self._table(tensors.infos, self._owners)
+        return self._seen(), self._own(tensors.rewards), terminated, truncated, infos
+
+    def set_start(self, world: int, options: dict[str, Any]) -> None:
+        """Set how a world's next games begin, while its present one goes on."""
+        with self._on_host():
+            super().set_start(world, options)
+
+    def restore(self, snapshot: bytes) -> tuple[Any, dict[str, Any]]:
+        """Go on from a snapshot, of this class or of `ArkanoidVectorEnv`."""
+        with self._on_host():
+            _, infos = super().restore(snapshot)
+        self._was_reset[:] = True
+        return self._seen(), self._as_tensors(infos)
+
+    def spread(self, snapshot: bytes, seed: int | None = None) -> tuple[Any, dict[str, Any]]:
+        """Bring all worlds into the same state."""
+        with self._on_host():
+            _, infos = super().spread(snapshot, seed)
+        self._was_reset[:] = True
+        return self._seen(), self._as_tensors(infos)
+
+    def snapshot(self, world: int | None = None) -> bytes:
+        """Return the whole state of all worlds, or of one, as `ArkanoidVectorEnv` does."""
+        self._tensors.pull()
+        return super().snapshot(world)
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Return a frame of each world, uint8 [height, width, 3] in this processor's memory."""
+        self._tensors.pull()
+        return super().render()
+
+    def action_masks(self) -> Any:
+        """Return which actions do something now, a tensor, bool [n, actions]."""
+        self._tensors.pull()
+        return torch.from_numpy(super().action_masks()).to(self.device)
+
+    @property
+    def state(self) -> Worlds:
+        """The state of each game, NumPy records [n]: a read-only view of this processor's copy."""
+        self._tensors.pull()
+        return super().state
+
+    def record(self, world: int = 0) -> Any:
+        """Refuse: the device tells nobody of its steps."""
+        raise NotImplementedError(
+            "games on a device can't be recorded: make the environment without device=..., and "
+            "restore a snapshot there"
+        )
+
+    def _on_host(self) -> "_OnHost":
+        return _OnHost(self._tensors)
+
+    def _own(self, tensor: Tensor) -> Tensor:
+        return tensor.clone() if self.copy else tensor
+
+    def _seen(self) -> Any:
+        return self._parts(self._tensors.observations)
+
+    def _parts(self, tensors: dict[str, Tensor]) -> Any:
+        """Return observations as Gymnasium has them: a tensor, or a dictionary of them."""
+        owned = {kind: self._own(tensor) for kind, tensor in tensors.items()}
+        return owned if self.config.observation == "dict" else next(iter(owned.values()))
+
+    def _final_parts(self, done: Tensor) -> dict[str, Any]:
+        tensors = self._tensors
+        return {
+            "final_obs": self._parts(tensors.finals),
+            "_final_obs": done,
+            "final_info": self._table(tensors.final_infos * done, done),
+            "_final_info": done,
+        }
+
+    def _table(self, table: Tensor, owners: Tensor) -> dict[str, Any]:
+        """Return infos of a table [fields, n], and for each key who has it."""
+        infos: dict[str, Any] = {}
+        for key, values in zip(INFO_FIELDS, self._own(table), strict=True):
+            infos[key] = values
+            infos[f"_{key}"] = owners
+        return infos
+
+    def _as_tensors(self, infos: dict[str, Any]) -> dict[str, Any]:
+        return {key: torch.from_numpy(value).to(self.device) for key, value in infos.items()}
+
+
+class _OnHost:
+    """While it is entered, this processor has the worlds; then the device takes them back."""
+
+    def __init__(self, tensors: TensorBatch) -> None:
+        self._tensors = tensors
+
+    def __enter__(self) -> None:
+        self._tensors.pull()
+
+    def __exit__(self, *exception: object) -> None:
+        self._tensors.push()
+
+
+def read_device(device: Any) -> torch.device:
+    """Return the device that a text names.
+
+    Raises:
+        TypeError, ValueError: it names none of which the game knows.
+        RuntimeError: this computer has no such card.
+    """
+    if not isinstance(device, str | torch.device):
+        raise TypeError(f"device must be 'cuda', 'cuda:1', ... or 'cpu'; got {device!r}")
+    try:
+        found = torch.device(device)
+    except RuntimeError:
+        found = None
+    if found is None or found.type not in ("cpu", "cuda"):
+        raise ValueError(f"device must be 'cuda', 'cuda:1', ... or 'cpu'; got {device!r}")
+    if found.type == "cuda":
+        _check_card(found)
+    return found
+
+
+def _check_card(device: torch.device) -> None:
+    if not torch.cuda.is_available():
+        built = torch.version.cuda is None
+        why = "this torch was built for processors only" if built else "torch finds no NVIDIA card"
+        raise RuntimeError(
+            f"device={str(device)!r}: {why}; device='cpu' plays the same games without one"
+        )
+    count = torch.cuda.device_count()
+    if device.index is not None and device.index >= count:
+        raise RuntimeError(f"device={str(device)!r}: there are {count} cards, numbered from 0")
+    if torch.cuda.get_device_capability(device) < (8, 0):
+        raise RuntimeError(
+            f"{torch.cuda.get_device_name(device)} is too old: the game's kernels need compute "
+            "capability 8.0 (Ampere, 2020)"
+        )

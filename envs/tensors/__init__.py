@@ -1,0 +1,1 @@
+"""Worlds whose state and results are tensors of torch, on a graphics card or on this processor."""

@@ -1,0 +1,218 @@
+"""A batch whose worlds live in tensors, and are stepped where these are."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from ..actions import BOX, COMMANDS
+from ..batch.batch import Batch
+from ..draw.canvas import Drawn
+from ..observe.pixels import PixelObserver
+from ..observe.planes import ANY_CELL, MAX_MARKS, GridObserver
+from ..observe.shown import forget_shown, nothing_shown
+from ..observe.vector import VectorObserver
+from ..state import INFO_FIELDS, World
+from .arrays import Arrays
+from .entries import ENTRIES
+from .running import runner
+
+
+class TensorBatch:
+    """The worlds of a `Batch` in the memory of a device, which steps them.
+
+    The batch has the last word on all that happens seldom: how episodes begin, snapshots and
+    pictures for people. `pull` gives it the worlds for that, and `push` takes them back.
+
+    Args:
+        host: the batch.
+        device: where.
+
+    Attributes:
+        rewards: float64 [n], of the latest step; terminated, truncated: bool [n].
+        infos, final_infos: int64 [fields, n], in the order of `INFO_FIELDS`; the latter of the
+            episodes that ended, in same-step mode.
+        observations, finals: by the kind of observation, see `parts`; the latter are the last ones
+            of the episodes that ended.
+        illegal: int32 [n], how many illegal actions each world was given; each stood still.
+    """
+
+    def __init__(self, host: Batch, device: torch.device) -> None:
+        self.host, self.device = host, device
+        count = host.num_worlds
+        self._record = np.zeros(1, Arrays)
+        self._kept: list[Tensor] = []
+        self._is_ahead = False
+        self._worlds = self._put("worlds", host.worlds)
+        self._outcomes = self._put("outcomes", host.outcomes)
+        self._put("finals", host.finals)
+        self._put("rules", host.rules)
+        self._put("levels", host.levels)
+        self._put("commands", host.commands)
+        self._set(num_levels=len(host.levels), count=count, autoreset=int(host.autoreset))
+        self._set(episodic_life=host.config.episodic_life)
+        table = COMMANDS.get(host.config.actions)
+        if table is not None:
+            self._put("table", table)
+            self._set(num_actions=len(table))
+            self._actions = self._put("actions", np.zeros(count, np.int64))
+        else:
+            self._actions = self._put("actions", np.zeros((count, 2), np.float32))
+        self.illegal = self._put("illegal", np.zeros(count, np.int32))
+        self.rewards = self._put("rewards", np.zeros(count))
+        self.terminated = self._put("terminated", np.zeros(count, np.bool_))
+        self.truncated = self._put("truncated", np.zeros(count, np.bool_))
+        self.infos = self._put("infos", np.zeros((len(INFO_FIELDS), count), np.int64))
+        self.final_infos = self._put("final_infos", np.zeros((len(INFO_FIELDS), count), np.int64))
+        self.observations: dict[str, Tensor] = {}
+        self.finals: dict[str, Tensor] = {}
+        self._forget: list[Callable[[], None]] = []
+        for kind, observer in self._observers().items():
+            {"vector": self._add_vector, "grid": self._add_grid, "rgb": self._add_pictures}[kind](
+                observer
+            )
+        self._record["here"] = True
+        self._on_device = self._tensor(self._record)
+        self._run = runner(ENTRIES[host.config.observation], device)
+
+    def step(self, actions: Any) -> None:
+        """Play one decision in each world: integers [n], or velocity and fire, [n, 2].
+
+        Raises:
+            TypeError, ValueError: they have another form. Which values are illegal is not looked
+                at here, because that would wait for the device.
+        """
+        self._actions.copy_(self._read(actions))
+        self._is_ahead = True
+        self._run(self.host.num_worlds, self._on_device.data_ptr())
+
+    def pull(self) -> None:
+        """Give the worlds to the host, if they were stepped since it had them."""
+        if self._is_ahead:
+            host = self.host
+            shown = np.empty(host.observations.shape, host.observations.dtype)
+            for kind, tensor in self.observations.items():
+                into = shown if shown.dtype.names is None else shown[kind]
+                into[...] = tensor.cpu().numpy()
+            worlds, outcomes = (each.cpu().numpy() for each in (self._worlds, self._outcomes))
+            host.adopt(worlds, outcomes, shown)
+            self._is_ahead = False
+
+    def push(self) -> None:
+        """Take the worlds of the host."""
+        host = self.host
+        _copy(self._worlds, host.worlds)
+        _copy(self._outcomes, host.outcomes)
+        for kind, tensor in self.observations.items():
+            seen = host.observations
+            seen = seen if seen.dtype.names is None else seen[kind]
+            tensor.copy_(torch.from_numpy(np.ascontiguousarray(seen)))
+        for forget in self._forget:
+            forget()
+        self._is_ahead = False
+
+    def _read(self, actions: Any) -> Tensor:
+        """Return actions as a tensor of the right form."""
+        try:
+            tensor = torch.as_tensor(actions)
+        except (RuntimeError, TypeError, ValueError) as error:
+            raise TypeError(f"{actions!r:.200} is no tensor of actions: {error}") from error
+        shape = tuple(self._actions.shape)
+        whole = not (tensor.is_floating_point() or tensor.is_complex() or tensor.dtype == torch.bool)
+        discrete = len(shape) == 1
+        if tuple(tensor.shape) != shape or (discrete and not whole) or tensor.is_complex():
+            what = f"{shape[0]} integers" if discrete else f"numbers of shape {shape}, in {BOX}"
+            raise ValueError(
+                f"actions must be {what}; got {tensor.dtype} of shape {tuple(tensor.shape)}"
+            )
+        return tensor
+
+    def _observers(self) -> dict[str, Any]:
+        """Return the host's observers by their kind."""
+        kind = self.host.config.observation
+        if kind == "dict":
+            return dict(self.host.observer.parts)  # type: ignore[attr-defined]
+        return {kind: self.host.observer}
+
+    def _add_vector(self, observer: VectorObserver) -> None:
+        shape = observer.observations.shape
+        self._observe("vector", "vectors", np.zeros(shape, np.float32))
+        self._set(vector_size=shape[1], plain_length=observer.plain_length)
+        self._remember("vector_shown", nothing_shown(shape[0]), forget_shown)
+        if observer.shows_landings:
+            self._set(landings_start=observer.landings_start)
+            self._put("scratch", np.zeros(shape[0], World))
+
+    def _add_grid(self, observer: GridObserver) -> None:
+        shape = observer.observations.shape
+        self._observe("grid", "grids", np.zeros(shape, np.float32))
+        self._set(grid_size=int(np.prod(shape[1:])))
+        self._remember("grid_shown", nothing_shown(shape[0]), forget_shown)
+
+        def erase_all(marks: NDArray[np.int32]) -> None:
+            marks[:, 0] = ANY_CELL
+
+        self._remember("marks", np.zeros((shape[0], 1 + MAX_MARKS), np.int32), erase_all)
+
+    def _add_pictures(self, observer: PixelObserver) -> None:
+        sheets, count = observer.sheets, self.host.num_worlds
+        height, width = sheets[0].background.shape
+        places = (count, observer.stack * len(sheets), height, width)
+        self._observe("rgb", "pictures", np.zeros(places, np.uint8), observer.channels_last)
+        self._set(stack=observer.stack, channels=len(sheets), height=height, width=width)
+        self._remember("drawn", np.zeros(places[:2], Drawn), lambda drawn: None)
+        self._put("views", sheets[0].views)
+        for name in ("palettes", "backgrounds", "looks"):
+            arrays = [getattr(sheet, name.removesuffix("s") if name != "looks" else name) for sheet in sheets]
+            tensors = [self._tensor(array) for array in arrays]
+            self._record[name][0, : len(sheets)] = [tensor.data_ptr() for tensor in tensors]
+        looks = sheets[0].looks
+        self._set(num_colours=len(sheets[0].palette), num_looks=looks.shape[0])
+        self._set(look_rows=looks.shape[1], look_columns=looks.shape[2])
+
+    def _observe(
+        self, kind: str, field: str, array: NDArray[Any], channels_last: bool = False
+    ) -> None:
+        """Make the tensors of a kind of observation, and of the last ones of episodes."""
+        for target, name in ((self.observations, field), (self.finals, f"final_{field}")):
+            tensor = self._put(name, array)
+            target[kind] = tensor.movedim(1, -1) if channels_last else tensor
+
+    def _remember(
+        self, field: str, memory: NDArray[Any], forget: Callable[[NDArray[Any]], None]
+    ) -> None:
+        """Make an observer's memory, which is forgotten when the host has changed the worlds."""
+        forget(memory)
+        tensor = self._put(field, memory)
+        self._forget.append(lambda: _copy(tensor, memory))
+
+    def _set(self, **numbers: int) -> None:
+        for field, number in numbers.items():
+            self._record[field] = number
+
+    def _put(self, field: str, array: NDArray[Any]) -> Tensor:
+        """Put an array into the device's memory, and its address into the record."""
+        tensor = self._tensor(array)
+        self._record[field] = tensor.data_ptr()
+        return tensor
+
+    def _tensor(self, array: NDArray[Any]) -> Tensor:
+        """Return an array in the device's memory; of records, their bytes [n, size]."""
+        tensor = torch.empty_like(_as_tensor(array), device=self.device)
+        _copy(tensor, array)
+        self._kept.append(tensor)
+        return tensor
+
+
+def _as_tensor(array: NDArray[Any]) -> Tensor:
+    if array.dtype.names is not None:
+        array = np.frombuffer(array.tobytes(), np.uint8).reshape(array.size, -1)
+    # A copy: torch warns of arrays that may not be written.
+    return torch.from_numpy(np.array(array))
+
+
+def _copy(tensor: Tensor, array: NDArray[Any]) -> None:
+    tensor.copy_(_as_tensor(array).view(tensor.shape))

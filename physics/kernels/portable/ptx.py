@@ -1,0 +1,102 @@
+"""Entries as PTX, the assembly of NVIDIA's graphics cards.
+
+LLVM makes it of the very code that Numba makes for this processor, so that the card gives the same
+bits: a multiplication and an addition are never joined, and divisions and square roots round as
+IEEE 754 says. A thread of the card runs an entry for one item.
+"""
+
+import re
+from collections.abc import Sequence
+
+import llvmlite
+import llvmlite.binding as llvm
+import numba
+
+from ..cache import writable_folder
+from ..messages import say_compiling_for
+from ..sealed import seal, unseal
+from .entries import Entry, compile_entries
+
+# Every card since Ampere (2020) runs it.
+ARCHITECTURE = "sm_80"
+
+_TRIPLE = "nvptx64-nvidia-cuda"
+_MARK = b"ARKAPTX\0"
+_VERSION = 1
+
+# A kernel of the card for each entry. Its threads may be more than there are items.
+_KERNEL = """
+define ptx_kernel void @{name}_kernel(i64 %count, i64 %address) {{
+  %thread = call i32 @llvm.nvvm.read.ptx.sreg.tid.x()
+  %block = call i32 @llvm.nvvm.read.ptx.sreg.ctaid.x()
+  %size = call i32 @llvm.nvvm.read.ptx.sreg.ntid.x()
+  %first = mul i32 %block, %size
+  %index32 = add i32 %first, %thread
+  %index = zext i32 %index32 to i64
+  %exists = icmp slt i64 %index, %count
+  br i1 %exists, label %work, label %end
+work:
+  %result = alloca i64
+  %error = alloca ptr
+  call i32 @{name}(ptr %result, ptr %error, i64 %index, i64 %address)
+  br label %end
+end:
+  ret void
+}}
+"""
+_PLACES = "\n".join(
+    f"declare i32 @llvm.nvvm.read.ptx.sreg.{name}.x()" for name in ("tid", "ctaid", "ntid")
+)
+
+
+def make_ptx(entries: Sequence[Entry]) -> str:
+    """Return the PTX of entries, each a kernel ``NAME_kernel(count, address)``.
+
+    It is kept with the machine code of other kernels, for as long as no source changes.
+
+    Raises:
+        RuntimeError: the entries could not be compiled.
+    """
+    compiler = f"ptx {numba.__version__} {llvmlite.__version__} {ARCHITECTURE} {entries!r}"
+    # All entries of one file: the digest covers what it imports.
+    (file,) = {entry.file for entry in entries}
+    folder = writable_folder(file, compiler)
+    kept = None if folder is None else folder / "entries.ptx"
+    if kept is not None and kept.is_file():
+        try:
+            return bytes(unseal("file of PTX", _MARK, _VERSION, kept.read_bytes())).decode()
+        except ValueError:
+            kept.unlink(missing_ok=True)
+    say_compiling_for("graphics cards")
+    ptx = _assemble(compile_entries(entries), entries)
+    if kept is not None:
+        kept.write_bytes(seal(_MARK, _VERSION, ptx.encode()))
+    return ptx
+
+
+def _assemble(code: str, entries: Sequence[Entry]) -> str:
+    """Return PTX of the code of entries."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    # Never join a multiplication and an addition: it would round once instead of twice.
+    llvm.set_option("", "-nvptx-fma-level=0")
+    machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu=ARCHITECTURE, opt=3)
+    kernels = [_KERNEL.format(name=entry.name) for entry in entries]
+    module = llvm.parse_assembly(_for_card(code, str(machine.target_data)) + _PLACES + "".join(kernels))
+    for entry in entries:
+        module.get_function(entry.name).linkage = "internal"
+    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    # The card's threads are its vectors.
+    options.loop_vectorization = options.slp_vectorization = False
+    builder = llvm.create_pass_builder(machine, options)
+    builder.getModulePassManager().run(module, builder)
+    return str(machine.emit_assembly(module))
+
+
+def _for_card(code: str, layout: str) -> str:
+    """Return code with the card's layout of data, and without what is this processor's."""
+    code = re.sub(r"^target datalayout = .*$", f'target datalayout = "{layout}"', code, flags=re.M)
+    code = re.sub(r"^target triple = .*$", f'target triple = "{_TRIPLE}"', code, flags=re.M)
+    code = re.sub(r'"(target-cpu|target-features|tune-cpu|probe-stack)"="[^"]*"', "", code)
+    # The card has no library of C, but square roots of its own.
+    return re.sub(r"\bcall ([^\n]*?)double @sqrt\(", r"call \1double @llvm.sqrt.f64(", code)
