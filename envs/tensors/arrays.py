@@ -10,46 +10,46 @@ CHANNELS = 3  # at most, of a picture
 # needed to find a world's part of it.
 Arrays = record_dtype(
     [
-        # The game. Which array has which dtype is written in `entries`.
-        ("worlds", np.int64),
-        ("rules", np.int64),
-        ("levels", np.int64),
+        # The game.
+        ("worlds", np.int64),  # `World` [n]
+        ("outcomes", np.int64),  # `Outcome` [n]
+        ("rules", np.int64),  # `Rules` [1]
+        ("levels", np.int64),  # `LevelEntry` [num_levels]
         ("num_levels", np.int64),
-        ("outcomes", np.int64),
         # What is commanded: int64 [n], or float32 [n, 2] if there is no table.
         ("actions", np.int64),
         ("table", np.int64),  # float64 [num_actions, 2]; 0: there is none
         ("num_actions", np.int64),
-        ("commands", np.int64),
+        ("commands", np.int64),  # float64 [n, 2]
         ("illegal", np.int64),  # int32 [n], how many illegal actions each world was given
         ("autoreset", np.int64),  # of `Autoreset`
         ("episodic_life", np.int64),
-        # The results of a step, and with same-step autoreset those that its reset replaced.
+        # The results of a step.
         ("count", np.int64),  # n
-        ("rewards", np.int64),
-        ("terminated", np.int64),
-        ("truncated", np.int64),
+        ("rewards", np.int64),  # float64 [n]
+        ("terminated", np.int64),  # bool [n]
+        ("truncated", np.int64),  # bool [n]
         ("infos", np.int64),  # int64 [fields, n]
-        ("final_infos", np.int64),
-        ("finals", np.int64),
-        # Vectors.
+        ("final_infos", np.int64),  # the same of episodes that ended, in same-step mode
+        ("moves", np.int64),  # uint8 [n], what became of each world, see `entries`
+        # Vectors, float32 [n, vector_size].
         ("vectors", np.int64),
         ("final_vectors", np.int64),
         ("vector_size", np.int64),
-        ("vector_shown", np.int64),
+        ("vector_shown", np.int64),  # int64 [n, 3]
         ("plain_length", np.int64),
         ("landings_start", np.int64),  # 0: there are none
-        ("scratch", np.int64),
-        # Grids.
+        # Grids, float32 [n, grid_size].
         ("grids", np.int64),
         ("final_grids", np.int64),
         ("grid_size", np.int64),
-        ("grid_shown", np.int64),
-        ("marks", np.int64),
-        # Pictures: uint8 [n, stack, channels, height, width].
+        ("grid_shown", np.int64),  # int64 [n, 3]
+        ("marks", np.int64),  # int32 [n, 1 + MAX_MARKS]
+        # Pictures, uint8 [n, stack, channels, height, width], and the newest of each world.
         ("pictures", np.int64),
         ("final_pictures", np.int64),
-        ("drawn", np.int64),
+        ("canvas", np.int64),  # uint8 [n, channels, height, width]
+        ("drawn", np.int64),  # `Drawn` [n, channels]
         ("stack", np.int64),
         ("channels", np.int64),
         ("height", np.int64),

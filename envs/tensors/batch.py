@@ -9,16 +9,21 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ..actions import BOX, COMMANDS
-from ..batch.batch import Batch
+from ..batch.batch import Autoreset, Batch
 from ..draw.canvas import Drawn
 from ..observe.pixels import PixelObserver
 from ..observe.planes import ANY_CELL, MAX_MARKS, GridObserver
 from ..observe.shown import forget_shown, nothing_shown
 from ..observe.vector import VectorObserver
-from ..state import INFO_FIELDS, World
+from ..state import INFO_FIELDS
 from .arrays import Arrays
-from .entries import ENTRIES
-from .running import runner
+from .entries import STEPS
+from .running import Runs
+
+# Threads of a block on a card. One that plays a world needs nearly all registers that a thread may
+# have: larger blocks would leave a part of the card without work.
+_FEW, _MANY = 32, 256
+_WORD = 8  # bytes of a picture that a thread moves
 
 
 class TensorBatch:
@@ -48,7 +53,6 @@ class TensorBatch:
         self._is_ahead = False
         self._worlds = self._put("worlds", host.worlds)
         self._outcomes = self._put("outcomes", host.outcomes)
-        self._put("finals", host.finals)
         self._put("rules", host.rules)
         self._put("levels", host.levels)
         self._put("commands", host.commands)
@@ -67,6 +71,7 @@ class TensorBatch:
         self.truncated = self._put("truncated", np.zeros(count, np.bool_))
         self.infos = self._put("infos", np.zeros((len(INFO_FIELDS), count), np.int64))
         self.final_infos = self._put("final_infos", np.zeros((len(INFO_FIELDS), count), np.int64))
+        self._put("moves", np.zeros(count, np.uint8))
         self.observations: dict[str, Tensor] = {}
         self.finals: dict[str, Tensor] = {}
         self._forget: list[Callable[[], None]] = []
@@ -76,7 +81,13 @@ class TensorBatch:
             )
         self._record["here"] = True
         self._on_device = self._tensor(self._record)
-        self._run = runner(ENTRIES[host.config.observation], device)
+        runs = STEPS[host.config.observation]
+        here = Runs([run.entry for run in runs], device)
+        self._steps = [
+            (here.of(run.entry, _FEW if run.items == "world" else _MANY), self._items(run.items))
+            for run in runs
+            if host.autoreset is Autoreset.SAME_STEP or not run.same_step
+        ]
 
     def step(self, actions: Any) -> None:
         """Play one decision in each world: integers [n], or velocity and fire, [n, 2].
@@ -87,7 +98,9 @@ class TensorBatch:
         """
         self._actions.copy_(self._read(actions))
         self._is_ahead = True
-        self._run(self.host.num_worlds, self._on_device.data_ptr())
+        address = self._on_device.data_ptr()
+        for run, items in self._steps:
+            run(items, address)
 
     def pull(self) -> None:
         """Give the worlds to the host, if they were stepped since it had them."""
@@ -114,6 +127,19 @@ class TensorBatch:
             forget()
         self._is_ahead = False
 
+    def _items(self, what: str) -> int:
+        """Return how many items a run has."""
+        record = self._record[0]
+        each = {
+            "world": 1,
+            "vector": record["vector_size"],
+            "grid": record["grid_size"],
+            "picture": record["channels"] * record["height"] * record["width"],
+        }[what]
+        if what == "picture" and each % _WORD == 0:
+            each //= _WORD
+        return self.host.num_worlds * int(each)
+
     def _read(self, actions: Any) -> Tensor:
         """Return actions as a tensor of the right form."""
         try:
@@ -121,7 +147,9 @@ class TensorBatch:
         except (RuntimeError, TypeError, ValueError) as error:
             raise TypeError(f"{actions!r:.200} is no tensor of actions: {error}") from error
         shape = tuple(self._actions.shape)
-        whole = not (tensor.is_floating_point() or tensor.is_complex() or tensor.dtype == torch.bool)
+        whole = not (
+            tensor.is_floating_point() or tensor.is_complex() or tensor.dtype == torch.bool
+        )
         discrete = len(shape) == 1
         if tuple(tensor.shape) != shape or (discrete and not whole) or tensor.is_complex():
             what = f"{shape[0]} integers" if discrete else f"numbers of shape {shape}, in {BOX}"
@@ -144,7 +172,6 @@ class TensorBatch:
         self._remember("vector_shown", nothing_shown(shape[0]), forget_shown)
         if observer.shows_landings:
             self._set(landings_start=observer.landings_start)
-            self._put("scratch", np.zeros(shape[0], World))
 
     def _add_grid(self, observer: GridObserver) -> None:
         shape = observer.observations.shape
@@ -163,12 +190,13 @@ class TensorBatch:
         places = (count, observer.stack * len(sheets), height, width)
         self._observe("rgb", "pictures", np.zeros(places, np.uint8), observer.channels_last)
         self._set(stack=observer.stack, channels=len(sheets), height=height, width=width)
-        self._remember("drawn", np.zeros(places[:2], Drawn), lambda drawn: None)
+        self._put("canvas", np.zeros((count, len(sheets), height, width), np.uint8))
+        self._remember("drawn", np.zeros((count, len(sheets)), Drawn), lambda drawn: None)
         self._put("views", sheets[0].views)
-        for name in ("palettes", "backgrounds", "looks"):
-            arrays = [getattr(sheet, name.removesuffix("s") if name != "looks" else name) for sheet in sheets]
-            tensors = [self._tensor(array) for array in arrays]
-            self._record[name][0, : len(sheets)] = [tensor.data_ptr() for tensor in tensors]
+        for channel, sheet in enumerate(sheets):
+            arrays = sheet.palette, sheet.background, sheet.looks
+            for field, array in zip(("palettes", "backgrounds", "looks"), arrays, strict=True):
+                self._record[field][0, channel] = self._tensor(array).data_ptr()
         looks = sheets[0].looks
         self._set(num_colours=len(sheets[0].palette), num_looks=looks.shape[0])
         self._set(look_rows=looks.shape[1], look_columns=looks.shape[2])

@@ -1,37 +1,46 @@
 """How entries run where a batch's tensors are."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 
 import torch
 
 from ...physics.kernels.portable import Entry
 
-# Takes how many items there are, and the address of the entry's record.
-Run = Callable[[int, int], None]
+# Takes how many items there are, and the address of the entries' record.
+RunEntry = Callable[[int, int], None]
 
 
-def runner(entry: Entry, device: torch.device) -> Run:
-    """Return what runs an entry on a device.
+class Runs:
+    """Entries, ready to run on a device.
 
     Raises:
-        ImportError, RuntimeError: see `CudaKernel`.
+        ImportError, RuntimeError: see `CudaKernels`.
     """
-    if device.type == "cpu":
-        kernel = getattr(import_module(entry.module), entry.name)
 
-        def run_here(count: int, address: int) -> None:
-            for index in range(count):
-                kernel(index, address)
+    def __init__(self, entries: Sequence[Entry], device: torch.device) -> None:
+        self._device = device
+        self._on_card = None
+        if device.type == "cuda":
+            # Imported on demand: it needs a package that only cards do.
+            from ...physics.kernels.portable.cuda import CudaKernels
 
-        return run_here
-    # Imported on demand: it needs a package that only cards do.
-    from ...physics.kernels.portable.cuda import CudaKernel
+            card = torch.cuda.current_device() if device.index is None else device.index
+            self._on_card = CudaKernels(entries, card)
 
-    card = torch.cuda.current_device() if device.index is None else device.index
-    on_card = CudaKernel(entry, card)
+    def of(self, entry: Entry, threads: int) -> RunEntry:
+        """Return what runs one of them; threads: of a block, on a card."""
+        if self._on_card is None:
+            kernel = getattr(import_module(entry.module), entry.name)
 
-    def run_there(count: int, address: int) -> None:
-        on_card.launch(count, address, torch.cuda.current_stream(device).cuda_stream)
+            def run_here(count: int, address: int) -> None:
+                for index in range(count):
+                    kernel(index, address)
 
-    return run_there
+            return run_here
+        launch, device = self._on_card.launcher(entry, threads), self._device
+
+        def run_there(count: int, address: int) -> None:
+            launch(count, address, torch.cuda.current_stream(device).cuda_stream)
+
+        return run_there

@@ -18,6 +18,7 @@ has one test for each part, which says what is missing and where it is used:
 ``serialize.dumps``                 to write them
 ``event`` ``numba:compile``         to notice that the compiler is at work
 ``intrinsic, arrayobj``             to make arrays that count no references
+``cgutils.alloca_once``             to make them on the stack
 ==================================  ================================================================
 """
 
@@ -32,6 +33,7 @@ import numba
 from numba.core import event as events
 from numba.core import types
 from numba.core.caching import FunctionCache
+from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs to this Numba
 from numba.core.extending import intrinsic
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
@@ -47,6 +49,8 @@ _numba = cast(Any, numba)
 
 # Settings that change the machine code; variables NUMBA_... of the same names set them.
 CODE_SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")
+
+STACK_ALIGNMENT = 16  # bytes
 
 # Without Numba's run time, which counts the references of every array that is passed on.
 WITHOUT_RUNTIME = {"_nrt": False}
@@ -226,3 +230,26 @@ def addressed_array(typing_context: Any, address: Any, shape: Any, dtype: Any) -
         return view._getvalue()
 
     return array_type(types.intp, shape, dtype), generate
+
+
+@intrinsic(prefer_literal=True)  # type: ignore[untyped-decorator, unused-ignore]
+def stack_bytes(typing_context: Any, size: Any) -> Any:
+    """Return an array of bytes on the stack of the kernel that calls this."""
+    array_type = types.Array(types.uint8, 1, "C")
+    length = size.literal_value
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        memory = alloca_once(builder, ir.ArrayType(ir.IntType(8), length))
+        memory.align = STACK_ALIGNMENT
+        view = make_array(array_type)(context, builder)
+        populate_array(
+            view,
+            data=builder.bitcast(memory, view.data.type),
+            shape=[context.get_constant(types.intp, length)],
+            strides=[context.get_constant(types.intp, 1)],
+            itemsize=context.get_constant(types.intp, 1),
+            meminfo=None,
+        )
+        return view._getvalue()
+
+    return array_type(size), generate

@@ -1,12 +1,13 @@
 """Kernels for other machines than this processor: a graphics card, and what else LLVM knows.
 
 An *entry* is a kernel ``(index, address) -> None``: it does the work of one item, a world say,
-whose arrays it finds by the numbers and addresses of a record that lies at ``address``. That is all
-that a machine has to know to run it. `array_at` makes arrays of addresses, `find_entry` names an
-entry, `make_ptx` compiles entries for a graphics card, and `CudaDevice` runs them there.
+whose arrays it finds by the numbers and addresses of a record that lies at ``address``. That is
+all that a machine has to know to run it. `array_at` makes arrays of addresses, `on_stack` small
+ones that are forgotten; `ptx.make_ptx` compiles entries for graphics cards, where
+`cuda.CudaKernels` runs them.
 """
 
-from .addresses import array_at
+from .addresses import array_at, on_stack
 from .entries import Entry
 
-__all__ = ["Entry", "array_at"]
+__all__ = ["Entry", "array_at", "on_stack"]

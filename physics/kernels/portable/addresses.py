@@ -1,4 +1,4 @@
-"""Arrays that begin at an address, for entries."""
+"""Arrays that begin at an address, or lie on the stack, for entries."""
 
 import ctypes
 import math
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..decorators import accessor
-from ..numba_internals import addressed_array, is_interpreted
+from ..numba_internals import addressed_array, is_interpreted, stack_bytes
 
 
 def _numpy_array(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
@@ -27,3 +27,14 @@ def array_at(address: int, shape: Any, dtype: Any) -> Any:
     Nothing checks that there is one. It must outlive all use of the array.
     """
     return _array(address, shape, dtype)
+
+
+def _numpy_bytes(size: int) -> Any:
+    """Do the same as `on_stack` where kernels run interpreted."""
+    return np.zeros(size, np.uint8)
+
+
+# `on_stack(size)` returns an array of so many bytes, a constant, that begin with any values. They
+# end with the kernel that asks for them, and must not be returned. A graphics card keeps what lies
+# on the stacks of neighbouring threads side by side, and so reads and writes it fastest.
+on_stack: Any = _numpy_bytes if is_interpreted() else stack_bytes

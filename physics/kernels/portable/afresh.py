@@ -20,10 +20,9 @@ def _compile(entry: Entry) -> Any:
     function = kernel.overloads[signature].fndesc.llvm_func_name
     module = llvm.parse_assembly(kernel.inspect_llvm(signature))
     for each in module.functions:
-        if not each.is_declaration and each.name != function:
-            # Two entries share what they call, and nobody else calls it.
-            if each.linkage.name == "external":
-                each.linkage = "internal"
+        # Entries share what they call; what only this one has, Python's way in say, is its own.
+        if not each.is_declaration and each.name != function and each.linkage.name == "external":
+            each.linkage = "internal"
     module.get_function(function).name = entry.name
     return module
 

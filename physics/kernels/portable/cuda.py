@@ -1,35 +1,34 @@
 """Entries on NVIDIA's graphics cards, by the driver's own interface (the package ``cuda-core``)."""
 
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
 from .entries import Entry
 from .ptx import make_ptx
 
-# Threads of a block. A thread needs nearly all registers that one may have, so that larger blocks
-# would leave a part of the card without work.
-_BLOCK = 32
 
-
-class CudaKernel:
-    """An entry on one card.
+class CudaKernels:
+    """Entries on one card.
 
     Args:
-        entry: what a thread does for each item.
+        entries: each is what a thread does for an item.
         card: its number.
 
     Raises:
         ImportError: the package ``cuda-core`` is missing.
-        RuntimeError: the entry could not be compiled, or the card or its driver refuses it.
+        RuntimeError: the entries could not be compiled, or the card or its driver refuses them.
     """
 
-    def __init__(self, entry: Entry, card: int) -> None:
+    def __init__(self, entries: Sequence[Entry], card: int) -> None:
         self._core = _cuda_core()
-        ptx = make_ptx([entry])
+        ptx = make_ptx(entries)
         try:
             self._core.Device(card).set_current()
             self._code = self._core.ObjectCode.from_ptx(ptx.encode())
-            self._kernel = self._code.get_kernel(f"{entry.name}_kernel")
+            self._kernels = {
+                entry: self._code.get_kernel(f"{entry.name}_kernel") for entry in entries
+            }
         except Exception as error:  # each version of the package has classes of its own
             raise RuntimeError(
                 f"the graphics card {card} refuses the game's kernels ({error}): it needs compute "
@@ -37,18 +36,24 @@ class CudaKernel:
             ) from error
         self._streams: dict[int, Any] = {}
 
-    def launch(self, count: int, address: int, stream: int) -> None:
-        """Let the card run the entry for ``count`` items, without waiting for it.
+    def launcher(self, entry: Entry, threads: int) -> Callable[[int, int, int], None]:
+        """Return what lets the card run an entry, without waiting for it.
+
+        It takes the number of items; the address of the entry's record, in the card's memory; and
+        the handle of the stream whose earlier work must be done before.
 
         Args:
-            address: of the entry's record, in the card's memory.
-            stream: the handle of the stream whose earlier work must be done before.
+            threads: of a block.
         """
-        core = self._core
-        if stream not in self._streams:
-            self._streams[stream] = core.Stream.from_handle(stream)
-        config = core.LaunchConfig(grid=-(-count // _BLOCK), block=_BLOCK)
-        core.launch(self._streams[stream], config, self._kernel, count, address)
+        core, kernel, streams = self._core, self._kernels[entry], self._streams
+
+        def launch(count: int, address: int, stream: int) -> None:
+            if stream not in streams:
+                streams[stream] = core.Stream.from_handle(stream)
+            config = core.LaunchConfig(grid=-(-count // threads), block=threads)
+            core.launch(streams[stream], config, kernel, count, address)
+
+        return launch
 
 
 @cache
@@ -61,8 +66,4 @@ def _cuda_core() -> Any:
             "games on a graphics card need the package cuda-core: "
             'pip install "arkanoid[gpu]" brings it'
         ) from error
-    if hasattr(core, "Device"):
-        return core
-    import cuda.core.experimental as experimental  # type: ignore[import-untyped, import-not-found, unused-ignore]
-
-    return experimental
+    return core

@@ -30,9 +30,11 @@ define ptx_kernel void @{name}_kernel(i64 %count, i64 %address) {{
   %thread = call i32 @llvm.nvvm.read.ptx.sreg.tid.x()
   %block = call i32 @llvm.nvvm.read.ptx.sreg.ctaid.x()
   %size = call i32 @llvm.nvvm.read.ptx.sreg.ntid.x()
-  %first = mul i32 %block, %size
-  %index32 = add i32 %first, %thread
-  %index = zext i32 %index32 to i64
+  %block64 = zext i32 %block to i64
+  %size64 = zext i32 %size to i64
+  %thread64 = zext i32 %thread to i64
+  %first = mul i64 %block64, %size64
+  %index = add i64 %first, %thread64
   %exists = icmp slt i64 %index, %count
   br i1 %exists, label %work, label %end
 work:
@@ -82,7 +84,9 @@ def _assemble(code: str, entries: Sequence[Entry]) -> str:
     llvm.set_option("", "-nvptx-fma-level=0")
     machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu=ARCHITECTURE, opt=3)
     kernels = [_KERNEL.format(name=entry.name) for entry in entries]
-    module = llvm.parse_assembly(_for_card(code, str(machine.target_data)) + _PLACES + "".join(kernels))
+    module = llvm.parse_assembly(
+        _for_card(code, str(machine.target_data)) + _PLACES + "".join(kernels)
+    )
     for entry in entries:
         module.get_function(entry.name).linkage = "internal"
     options = llvm.create_pipeline_tuning_options(speed_level=3)
