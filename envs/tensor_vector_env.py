@@ -104,6 +104,10 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
         infos |= self._table(tensors.infos, self._owners)
         return self._seen(), self._own(tensors.rewards), terminated, truncated, infos
 
+    def observe(self) -> Any:
+        """Return the latest observations, as `step` does."""
+        return self._seen()
+
     def set_start(self, world: int, options: dict[str, Any]) -> None:
         """Set how a world's next games begin, while its present one goes on."""
         with self._on_host():

@@ -20,6 +20,7 @@ def make_worlds(
     num_worlds: int,
     config: Config | None = None,
     render_mode: str | None = None,
+    device: str | None = None,
 ) -> VectorEnv[Any, Any, Any]:
     """Return ``num_worlds`` worlds that start a new episode in the step that ends one.
 
@@ -30,6 +31,7 @@ def make_worlds(
         num_worlds: how many.
         config: replaces the experiment's own configuration.
         render_mode: as for `gym.make_vec`.
+        device: where the worlds are; None: in this processor's memory, as NumPy's arrays.
 
     Raises:
         SettingsError: the environment refuses its arguments, or so many worlds do not fit into
@@ -46,6 +48,8 @@ def make_worlds(
         "render_mode": render_mode,
         "autoreset_mode": "SameStep",
     }
+    if device is not None:
+        arguments["device"] = device
     try:
         return gym.make_vec(
             experiment.env_id,
@@ -53,7 +57,7 @@ def make_worlds(
             vectorization_mode="vector_entry_point",
             **arguments,
         )
-    except (TypeError, ValueError, gym.error.Error) as error:
+    except (TypeError, ValueError, ImportError, RuntimeError, gym.error.Error) as error:
         raise SettingsError(f"{experiment.env_id} refuses the [env] table: {error}") from error
     except MemoryError:
         raise SettingsError(too_many) from None

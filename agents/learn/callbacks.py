@@ -49,7 +49,7 @@ class ProgressBar(BaseCallback):
         )
 
     def _on_step(self) -> bool:
-        self._bar.update(self.training_env.num_envs)
+        self._bar.update(self.model.num_timesteps - self._bar.n)
         return True
 
     def _on_rollout_end(self) -> None:

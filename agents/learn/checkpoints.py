@@ -24,8 +24,10 @@ from ..experiment.files import cause, quoted
 from ..experiment.provenance import memory_gib
 from ..experiment.settings import Experiment
 from ..experiment.worlds import native
+from ..tensor_adapter import TensorVecEnv
 from .checkpoint_form import RECENT, State, check_state
 from .levels.sampling import check_levels
+from .ppo import FastPPO
 from .tensors import read_tensors, write_tensors
 
 # What stable-baselines3 counts and keeps from one rollout to the next.
@@ -39,6 +41,8 @@ def capture(model: PPO, venv: GymnasiumVecEnv, callback_state: dict[str, Any]) -
 
     It consists of tensors, numbers, texts, and lists and tables of them, all copied.
     """
+    if isinstance(model, FastPPO):
+        model.settle()
     _, keys, *place = np.random.get_state()  # noqa: NPY002 (stable-baselines3 draws from it)
     state = {
         "format": _FORMAT,
@@ -227,14 +231,21 @@ class Checkpoints(BaseCallback):
         self._every = every
         self._callback_state = callback_state
         self._tell_written = tell_written
+        # On a device a training ends between an update and the next rollout only, and what lies
+        # there is brought here only if it is written.
+        self._is_seldom = isinstance(venv, TensorVecEnv)
         self._state: State | None = None
         # The first one is written at once, so that a run that is killed early can resume.
         self._written = -every
 
     def _on_rollout_start(self) -> None:
-        self._capture()
-        if self.model.num_timesteps >= self._written + self._every:
+        is_due = self.model.num_timesteps >= self._written + self._every
+        if is_due or not self._is_seldom:
+            self._capture()
+        if is_due:
             self._write()
+        if self._is_seldom:
+            self._state = None
 
     def _on_step(self) -> bool:
         return True

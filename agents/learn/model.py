@@ -82,6 +82,18 @@ def find_device(name: str) -> torch.device:
     return torch.device("cpu")
 
 
+def worlds_device(experiment: Experiment) -> str | None:
+    """Return the device where the worlds of a training are; None: this processor, with arrays.
+
+    They are where the network is, if the trainer can make use of it.
+    """
+    trains_there = experiment.training.trainer == "fast" and experiment.config.observation != "dict"
+    if not trains_there or experiment.curriculum.sampling != "uniform":
+        return None
+    device = find_device(experiment.training.device)
+    return device.type if device.type == "cuda" else None
+
+
 def save_model(model: PPO, path: Path) -> None:
     """Write the model to ``path``, atomically; `PPO.load` reads it.
 

@@ -30,7 +30,7 @@ from .checkpoints import Checkpoints, resume
 from .collapse import CollapseWatch, Warn
 from .curves import CurveWriter, numbers_of
 from .levels.sampling import make_stages
-from .model import make_model, save_model
+from .model import make_model, save_model, worlds_device
 from .periodic_validation import Judge, PeriodicValidation
 from .starting import begin
 
@@ -70,7 +70,8 @@ def train(
     with folder.locked():
         if resumed:
             check_resumable(folder)
-        venv = adapt(make_worlds(experiment, experiment.training.worlds))
+        device = worlds_device(experiment)
+        venv = adapt(make_worlds(experiment, experiment.training.worlds, device=device))
         try:
             with _quiet_writer():
                 return _train(experiment, folder, venv, resumed, on_measure, on_log, shows_progress)

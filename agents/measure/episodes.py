@@ -21,6 +21,11 @@ MEASURES = ("cleared", "return", "steps", *FINAL_KEYWORDS, *SUMMED_KEYWORDS)
 
 def adapt(worlds: VectorEnv[Any, Any, Any]) -> GymnasiumVecEnv:
     """Return the worlds for stable-baselines3, with the game's own statistics of each episode."""
+    if hasattr(worlds.unwrapped, "device"):
+        # Imported on demand: it imports torch.
+        from ..tensor_adapter import TensorVecEnv
+
+        return TensorVecEnv(worlds, FINAL_KEYWORDS, SUMMED_KEYWORDS)
     return GymnasiumVecEnv(worlds, FINAL_KEYWORDS, SUMMED_KEYWORDS)
 
 

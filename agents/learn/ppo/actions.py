@@ -21,6 +21,10 @@ class Actions(Protocol):
         """Return what decides so many draws, [*shape, outputs], from torch's random numbers."""
         ...
 
+    def renew(self, noise: Tensor, generator: torch.Generator) -> None:
+        """Draw noise anew, in place, with a generator of its device."""
+        ...
+
     def draw(self, outputs: Tensor, noise: Tensor) -> Tensor:
         """Return one action per row."""
         ...
@@ -46,6 +50,10 @@ class Choices:
         """Return what decides so many draws."""
         return torch.empty(*shape, self._count).exponential_().log_()
 
+    def renew(self, noise: Tensor, generator: torch.Generator) -> None:
+        """Draw noise anew, in place."""
+        noise.exponential_(generator=generator).log_()
+
     def draw(self, outputs: Tensor, noise: Tensor) -> Tensor:
         """Return one action per row."""
         return (outputs - noise).argmax(-1)
@@ -66,6 +74,10 @@ class Reals:
     def noise(self, *shape: int) -> Tensor:
         """Return what decides so many draws."""
         return torch.randn(*shape, len(self._policy.log_std))
+
+    def renew(self, noise: Tensor, generator: torch.Generator) -> None:
+        """Draw noise anew, in place."""
+        noise.normal_(generator=generator)
 
     def draw(self, outputs: Tensor, noise: Tensor) -> Tensor:
         """Return one action per row."""

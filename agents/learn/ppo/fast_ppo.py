@@ -15,9 +15,13 @@ from stable_baselines3.common.vec_env import VecEnv
 from torch import Tensor
 
 from ...adapter import GymnasiumVecEnv
+from ...tensor_adapter import TensorVecEnv
 from .actions import Actions, actions_of
+from .on_device import DeviceLoop
 from .rollouts import Minibatch, Rollout
 
+# What is no part of a saved model.
+_OF_THE_LOOPS = ("rollout", "_actions", "_has_told", "_loop", "_goes_on")
 _FUSED = {"eps": 1e-5, "fused": True}
 _STATISTICS = ("policy_gradient_loss", "value_loss", "entropy_loss", "clip_fraction")
 # What a policy of its own kind may do otherwise.
@@ -44,6 +48,10 @@ class FastPPO(PPO):
     - ``rollout_buffer`` stays empty. A callback finds a step in its ``locals`` (``infos`` are for
       reading: worlds whose episode goes on share an empty one), a rollout in ``rollout``.
 
+    On a `TensorVecEnv` rollouts and updates stay on the device. A callback then finds the actions
+    of a whole rollout in its ``locals``, and its ``on_step`` is called once for each: the update
+    that follows is made before the training ends.
+
     Policies and spaces that it does not know are trained by the loops of stable-baselines3, and a
     warning says why.
     """
@@ -52,6 +60,8 @@ class FastPPO(PPO):
     rollout: Rollout | None = None
     _actions: Actions | None = None
     _has_told = False
+    _loop: DeviceLoop | None = None
+    _goes_on = True
 
     def _setup_model(self) -> None:
         if self.policy_kwargs.get("optimizer_class", torch.optim.Adam) is torch.optim.Adam:
@@ -59,7 +69,14 @@ class FastPPO(PPO):
         super()._setup_model()
 
     def _excluded_save_params(self) -> list[str]:
-        return [*super()._excluded_save_params(), "rollout", "_actions", "_has_told"]
+        return [
+            *super()._excluded_save_params(),
+            "rollout",
+            "_actions",
+            "_has_told",
+            "_loop",
+            "_goes_on",
+        ]
 
     def collect_rollouts(
         self,
@@ -70,6 +87,10 @@ class FastPPO(PPO):
     ) -> bool:
         """Play ``n_rollout_steps`` decisions in each world; return False if a callback stops it."""
         reason = self.why_not_fast()
+        if isinstance(env, TensorVecEnv):
+            if reason is not None:
+                raise ValueError(f"FastPPO can't train on a device: {reason}")
+            return self._collect_on_device(env, callback)
         if reason is not None:
             if not self._has_told:
                 warnings.warn(f"FastPPO trains as PPO does: {reason}", stacklevel=2)
@@ -120,6 +141,31 @@ class FastPPO(PPO):
         callback.on_rollout_end()
         return True
 
+    def _collect_on_device(self, env: TensorVecEnv, callback: BaseCallback) -> bool:
+        if not self._goes_on:
+            self._goes_on = True
+            return False
+        if self._loop is None or self._loop.env is not env:
+            self._actions, self._loop = actions_of(self.policy), DeviceLoop(self, env)
+        loop = self._loop
+        callback.on_rollout_start()
+        self.policy.set_training_mode(False)
+        infos = loop.collect()
+        actions = loop.actions
+        self.num_timesteps += actions[..., 0].numel() if actions.dim() > 2 else actions.numel()
+        self._update_info_buffer(infos, np.ones(len(infos), np.bool_))
+        callback.update_locals(locals())
+        self._goes_on = bool(callback.on_step())
+        callback.on_rollout_end()
+        return True
+
+    def settle(self) -> None:
+        """Bring what lies on a device to where stable-baselines3 keeps it."""
+        if self._loop is not None:
+            seen: Any = self._loop.env.observe().cpu().numpy()
+            self._last_obs = seen
+            self._last_episode_starts = np.zeros(len(seen), np.bool_)
+
     def _prepared(self, env: VecEnv, steps: int) -> Rollout:
         """Return the place for a rollout, the same one as long as it fits."""
         key = (id(self.policy), id(env), steps, env.num_envs, self.batch_size)
@@ -152,6 +198,9 @@ class FastPPO(PPO):
     def train(self) -> None:
         """Update the networks by the latest rollout."""
         rollout, parameters = self.rollout, list(self.policy.parameters())
+        if self._loop is not None:
+            self._train_on_device(self._loop)
+            return
         if rollout is None:
             super().train()
             return
@@ -185,12 +234,29 @@ class FastPPO(PPO):
             self.logger.record(f"train/{name}", mean)
         self.logger.record("train/approx_kl", torch.stack(divergences).mean().item())
         self.logger.record("train/loss", loss.item())
-        self._log_update(rollout)
+        self._log_update(rollout.values[:-1], rollout.returns)
+
+    def _train_on_device(self, loop: DeviceLoop) -> None:
+        self.policy.set_training_mode(True)
+        self._update_learning_rate(self.policy.optimizer)
+        loop.begin_update()
+        for name, value in loop.learn().items():
+            self.logger.record(f"train/{name}", value)
+        self._log_update(loop.values.cpu().numpy(), loop.returns.cpu().numpy())
+
+    def _clips(self) -> tuple[Any, Any]:
+        """Return the clip ranges of ratios and of values; the latter None if there is none."""
+        if self._loop is not None:
+            return self._loop.clip, self._loop.clip_of_values
+        remaining = self._current_progress_remaining
+        of_values = self.clip_range_vf
+        clip = self.clip_range(remaining)  # type: ignore[operator]
+        return clip, of_values(remaining) if of_values is not None else None  # type: ignore[operator]
 
     def loss(self, batch: Minibatch) -> tuple[Tensor, Tensor, Tensor]:
         """Return the loss of a minibatch, four parts of it for the log, and the divergence."""
         assert self._actions is not None
-        clip = self.clip_range(self._current_progress_remaining)  # type: ignore[operator]
+        clip, most = self._clips()
         advantages = batch.advantages
         if self.normalize_advantage and len(advantages) > 1:
             advantages = (advantages - advantages.mean()) / (advantages.std() + 1e-8)
@@ -201,7 +267,6 @@ class FastPPO(PPO):
         gain = -torch.min(advantages * ratio, advantages * within).mean()
         values = batch.values
         if self.clip_range_vf is not None:
-            most = self.clip_range_vf(self._current_progress_remaining)  # type: ignore[operator]
             values = batch.old_values + (values - batch.old_values).clamp(-most, most)
         error = torch.nn.functional.mse_loss(batch.returns, values)
         loss = gain - self.ent_coef * entropy + self.vf_coef * error
@@ -211,10 +276,10 @@ class FastPPO(PPO):
             parts = torch.stack([gain, error, -entropy, clipped])
         return loss, parts, divergence
 
-    def _log_update(self, rollout: Rollout) -> None:
+    def _log_update(self, values: Any, returns: Any) -> None:
         """Log what an update says besides its losses."""
         remaining = self._current_progress_remaining
-        explained = explained_variance(rollout.values[:-1].flatten(), rollout.returns.flatten())
+        explained = explained_variance(values.flatten(), returns.flatten())
         self.logger.record("train/explained_variance", explained)
         if hasattr(self.policy, "log_std"):
             self.logger.record("train/std", self.policy.log_std.exp().mean().item())
