@@ -74,7 +74,7 @@ class TensorVecEnv(GymnasiumVecEnv):
         self._running.zero_()
         self._reset_seeds()
         self._reset_options()
-        return observations.cpu().numpy()
+        return _as_arrays(observations)
 
     def observe(self) -> Tensor:
         """Return the latest observations, on the device."""
@@ -112,3 +112,10 @@ class TensorVecEnv(GymnasiumVecEnv):
         sums = [statistics["sums"][key] for key in self._summed_keywords]
         rows = [statistics["returns"], statistics["lengths"], *sums]
         self._running.copy_(torch.as_tensor(np.stack(rows)))
+
+
+def _as_arrays(observations: Any) -> Any:
+    """Return observations as arrays of NumPy."""
+    if isinstance(observations, dict):
+        return {name: _as_arrays(each) for name, each in observations.items()}
+    return observations.cpu().numpy()

@@ -78,6 +78,11 @@ class FastPPO(PPO):
             "_goes_on",
         ]
 
+    def _maybe_recommend_cpu(self, *arguments: Any, **keywords: Any) -> None:
+        """Do not warn of graphics cards where the worlds are there, too."""
+        if not isinstance(self.env, TensorVecEnv):
+            super()._maybe_recommend_cpu(*arguments, **keywords)
+
     def collect_rollouts(
         self,
         env: VecEnv,

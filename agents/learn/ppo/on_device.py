@@ -49,7 +49,8 @@ class DeviceLoop:
             return torch.zeros(shape, dtype=dtype, device=device)
 
         self._outputs = numbers(steps, worlds, policy.action_net.out_features)
-        self._noise = choice.noise(steps, worlds).to(device)
+        # Not drawn here: a resumed training would draw another time.
+        self._noise = torch.zeros_like(self._outputs)
         self.actions = torch.zeros_like(choice.draw(self._outputs, self._noise))
         self._rewards, self._goes_on = numbers(steps, worlds), numbers(steps, worlds)
         self._done = numbers(steps, worlds, dtype=torch.bool)

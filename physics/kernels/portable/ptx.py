@@ -102,5 +102,17 @@ def _for_card(code: str, layout: str) -> str:
     code = re.sub(r"^target datalayout = .*$", f'target datalayout = "{layout}"', code, flags=re.M)
     code = re.sub(r"^target triple = .*$", f'target triple = "{_TRIPLE}"', code, flags=re.M)
     code = re.sub(r'"(target-cpu|target-features|tune-cpu|probe-stack)"="[^"]*"', "", code)
+    # Records lie as in C. Numba does not tell LLVM, and the card would copy them byte by byte.
+    code = re.sub(
+        r"^.*@llvm\.mem(?:move|cpy)\..*$",
+        lambda line: re.sub(r"align 1 dereferenceable\((\d*[02468])\)", _aligned, line[0]),
+        code,
+        flags=re.M,
+    )
     # The card has no library of C, but square roots of its own.
     return re.sub(r"\bcall ([^\n]*?)double @sqrt\(", r"call \1double @llvm.sqrt.f64(", code)
+
+
+def _aligned(match: "re.Match[str]") -> str:
+    """Return what is known of memory of so many bytes, of which records have a multiple of 8."""
+    return f"align {8 if int(match[1]) % 8 == 0 else 1} dereferenceable({match[1]})"
