@@ -6,7 +6,7 @@ bricks, and multiplies a lattice by the first layer once, for as long as no bric
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import torch
@@ -15,16 +15,16 @@ from numpy.typing import NDArray
 from stable_baselines3.common.policies import ActorCriticPolicy, BaseModel
 from stable_baselines3.common.torch_layers import FlattenExtractor, MlpExtractor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
-from torch import Tensor
-
-from .flat import Network, Networks, Seen, is_known
+from torch import Tensor, nn
 
 # Decisions of one world that stay together in a minibatch. Each such run needs the products of at
 # least one lattice; a lattice lasts about a dozen decisions.
 _LONGEST_RUN = 32
 _SHORTEST_RUN = 8
-# Numbers of a layer that are evaluated at once, so that they stay in the processor's cache.
-_AT_ONCE = 2**17
+# Numbers that are evaluated at once, so that they stay in the processor's cache: of observations,
+# and of a layer.
+_AT_ONCE = 2**20
+_OF_A_LAYER = 2**17
 
 
 class Observations(Protocol):
@@ -126,11 +126,8 @@ class Lattices:
         self._bricks = bricks
         self._steps, self._worlds = steps, worlds
         self._extra = getattr(policy.features_extractor, "extra", None)
-        self._networks = [Network(layers, bricks) for layers in _layers(policy)]
-        self._actor, self._critic = self._networks
-        self._parameters = [each for network in self._networks for each in network.parameters]
-        widest = max(network.widest for network in self._networks)
-        self._runs_at_once = max(1, _AT_ONCE // (widest * run))
+        self._actor: list[Any] = [*policy.mlp_extractor.policy_net, policy.action_net]
+        self._critic: list[Any] = [*policy.mlp_extractor.value_net, policy.value_net]
         others = policy.features_dim - (bricks.stop - bricks.start)
         self._others = torch.empty(steps + 1, worlds, others)
         self._rows = np.empty((steps + 1, worlds), np.int64)
@@ -138,22 +135,23 @@ class Lattices:
         self._seen = np.empty((worlds, bricks.stop - bricks.start), np.float32)
         self._table: list[NDArray[np.float32]] = []
         self._size = 0
-        self._products = torch.empty(worlds, self._actor.linears[0].out_features)
+        self._products = torch.empty(worlds, self._actor[0].out_features)
 
     def act(self, step: int, observations: Any) -> Tensor:
         """Keep a step's observations; return the policy's outputs."""
         if step == 0:
             self._table.clear()
             self._size = 0
-            self._weights = self._actor.first()
+            self._weights = _split(self._actor[0].weight, self._bricks)
         new = self._keep(step, observations)
         of_bricks, of_others = self._weights
         if new.size:
-            lattices = torch.from_numpy(self._table[-1])
-            products = self._actor.products(lattices, of_bricks)
-            self._products.index_copy_(0, torch.from_numpy(new), products)
-        sums = torch.addmm(self._products, self._others[step], of_others)
-        return self._actor.through(sums)[-1]
+            products = torch.addmm(
+                self._actor[0].bias, torch.from_numpy(self._table[-1]), of_bricks.t()
+            )
+            self._products[torch.from_numpy(new)] = products
+        hidden = torch.addmm(self._products, self._others[step], of_others.t())
+        return _through(self._actor[1:], hidden)
 
     def _keep(self, step: int, observations: Any) -> NDArray[np.int64]:
         """Keep a step's observations; return the worlds [n] whose bricks have changed."""
@@ -187,14 +185,15 @@ class Lattices:
         """Return the values of all and of the last observations."""
         self._keep(self._steps, last)
         self._lattices = torch.from_numpy(np.concatenate(self._table))
-        of_bricks, of_others = self._critic.first()
-        products = self._critic.products(self._lattices, of_bricks)
+        first = self._critic[0]
+        of_bricks, of_others = _split(first.weight, self._bricks)
+        products = torch.addmm(first.bias, self._lattices, of_bricks.t())
         rows, others = torch.from_numpy(self._rows).flatten(), self._others.flatten(0, 1)
         parts = []
-        at_once = self._runs_at_once * self.run
+        at_once = max(1, _OF_A_LAYER // first.out_features)
         for part, numbers in zip(rows.split(at_once), others.split(at_once), strict=True):
-            sums = products.index_select(0, part).addmm_(numbers, of_others)
-            parts.append(self._critic.through(sums)[-1])
+            hidden = products.index_select(0, part).addmm_(numbers, of_others.t())
+            parts.append(_through(self._critic[1:], hidden))
         self._arrange()
         return torch.cat(parts).view(self._steps + 1, self._worlds)
 
@@ -211,22 +210,115 @@ class Lattices:
 
     def evaluated(self, order: Tensor, runs: int) -> Iterator[tuple[Tensor, Tensor]]:
         """Yield outputs and values of minibatches."""
+        networks = [(layers[0], *_rest(layers)) for layers in (self._actor, self._critic)]
         for chosen in order.split(runs):
-            parts = [self._of(some) for some in chosen.split(self._runs_at_once)]
-            outputs, values = Networks.apply(self._networks, parts, *self._parameters)  # type: ignore[no-untyped-call]
+            others = self._others_of_runs.index_select(0, chosen).flatten(0, 1)
+            first = self._first_of_runs.index_select(0, chosen).flatten()
+            starts = first.nonzero().flatten()
+            rows = self._rows_of_runs.index_select(0, chosen).flatten().index_select(0, starts)
+            seen = LatticesSeen(
+                self._lattices.index_select(0, rows), first.cumsum(0) - 1, starts, self._bricks
+            )
+            outputs, values = (
+                _through(rest, FirstLayer.apply(layer.weight, layer.bias, seen, others, rectify))  # type: ignore[no-untyped-call]
+                for layer, rectify, rest in networks
+            )
             yield outputs, values.flatten()
 
-    def _of(self, runs: Tensor) -> Seen:
-        """Return what the decisions of some runs saw."""
-        first = self._first_of_runs.index_select(0, runs).flatten()
-        starts = first.nonzero().flatten()
-        rows = self._rows_of_runs.index_select(0, runs).flatten().index_select(0, starts)
-        return Seen(
-            self._others_of_runs.index_select(0, runs).flatten(0, 1),
-            self._lattices.index_select(0, rows),
-            first.cumsum(0) - 1,
-            starts,
-        )
+
+class LatticesSeen(NamedTuple):
+    """The distinct lattices of a minibatch's decisions [n].
+
+    Attributes:
+        bricks: of each lattice, [lattices, cells].
+        places: the lattice of each decision, [n], rising.
+        starts: the first decision that saw each lattice, [lattices].
+        columns: the bricks' columns of the first layer's weights.
+    """
+
+    bricks: Tensor
+    places: Tensor
+    starts: Tensor
+    columns: slice
+
+
+class FirstLayer(torch.autograd.Function):
+    """A linear layer, with a rectifier if asked for, of lattices and of other numbers.
+
+    A lattice's products are made once, and repeated over the decisions that saw it. Their gradient
+    is the sum over these decisions. By hand, because torch would make and add whole arrays for
+    each slice of the weights.
+    """
+
+    @staticmethod
+    def forward(
+        ctx: Any,
+        weight: Tensor,
+        bias: Tensor,
+        seen: LatticesSeen,
+        others: Tensor,
+        rectify: bool,
+    ) -> Tensor:
+        """Return the layer's values [n, units].
+
+        Args:
+            ctx: torch's.
+            weight: [units, inputs].
+            bias: [units].
+            seen: the decisions' lattices.
+            others: the decisions' other numbers, [n, inputs - cells]; they get no gradient.
+            rectify: whether a rectifier follows.
+        """
+        of_bricks, of_others = _split(weight, seen.columns)
+        products = torch.addmm(bias, seen.bricks, of_bricks.t())
+        hidden = products.index_select(0, seen.places).addmm_(others, of_others.t())
+        ctx.seen, ctx.rectify = seen, rectify
+        if rectify:
+            hidden.relu_()
+        ctx.save_for_backward(others, hidden if rectify else None)
+        ctx.shape = weight.shape
+        return hidden
+
+    @staticmethod
+    def backward(ctx: Any, *grad_outputs: Tensor) -> tuple[Tensor, Tensor, None, None, None]:
+        """Return the gradients of ``weight`` and ``bias``."""
+        others, hidden = ctx.saved_tensors
+        (gradient,) = grad_outputs
+        seen: LatticesSeen = ctx.seen
+        if ctx.rectify:
+            gradient = torch.ops.aten.threshold_backward(gradient, hidden, 0)
+        # The sums over the decisions that saw a lattice; segment_reduce is 15 times slower.
+        numbers = torch.arange(len(gradient))
+        sums = torch.embedding_bag(gradient, numbers, seen.starts, False, 0)[0]
+        of_others = gradient.t() @ others
+        of_weight = gradient.new_empty(ctx.shape)
+        start, stop = seen.columns.start, seen.columns.stop
+        of_weight[:, :start] = of_others[:, :start]
+        of_weight[:, start:stop] = sums.t() @ seen.bricks
+        of_weight[:, stop:] = of_others[:, start:]
+        return of_weight, sums.sum(0), None, None, None
+
+
+def _rest(layers: list[nn.Module]) -> tuple[bool, list[nn.Module]]:
+    """Return whether a rectifier follows the first layer, and the layers after both."""
+    rectify = len(layers) > 1 and type(layers[1]) is nn.ReLU
+    return rectify, layers[2 if rectify else 1 :]
+
+
+def _through(layers: list[nn.Module], numbers: Tensor) -> Tensor:
+    """Return what layers make of numbers, which they may overwrite after the first."""
+    for index, layer in enumerate(layers):
+        # A layer before has made these numbers, and it does not need them again.
+        in_place = index and type(layer) is nn.ReLU
+        numbers = torch.relu_(numbers) if in_place else layer(numbers)
+    return numbers
+
+
+def _split(weight: Tensor, bricks: slice) -> tuple[Tensor, Tensor]:
+    """Return the bricks' columns of a first layer's weights, and all others."""
+    parts = (weight[:, : bricks.start], weight[:, bricks.stop :])
+    others = parts[0] if parts[1].shape[1] == 0 else torch.cat(parts, 1)
+    return weight[:, bricks], others
 
 
 def observations_for(
@@ -260,13 +352,8 @@ def _bricks(policy: ActorCriticPolicy, env: VecEnv) -> slice | None:
         return None
     if space.dtype != np.float32 or not policy.share_features_extractor:
         return None
-    if type(net) is not MlpExtractor or not all(is_known(layers) for layers in _layers(policy)):
+    first = [[*net.policy_net, policy.action_net][0], [*net.value_net, policy.value_net][0]]
+    if type(net) is not MlpExtractor or not all(type(layer) is nn.Linear for layer in first):
         return None
     layout = env.get_attr("layout", 0)[0] if env.has_attr("layout") else None
     return layout.get("bricks") if isinstance(layout, Mapping) else None
-
-
-def _layers(policy: ActorCriticPolicy) -> tuple[list[Any], list[Any]]:
-    """Return the layers of the policy and of the values."""
-    net = policy.mlp_extractor
-    return [*net.policy_net, policy.action_net], [*net.value_net, policy.value_net]
