@@ -256,7 +256,12 @@ def world_info(infos: dict[str, Any], world: int) -> dict[str, Any]:
         mask = infos.get(f"_{key}")
         if mask is None or not mask[world] or key in ("final_obs", "final_info"):
             continue
-        info[key] = world_info(value, world) if isinstance(value, dict) else deepcopy(value[world])
+        if isinstance(value, dict):
+            info[key] = world_info(value, world)
+        else:
+            # Numbers need no deepcopy, which is several times slower.
+            is_plain = isinstance(value, np.ndarray) and not value.dtype.hasobject
+            info[key] = value[world].copy() if is_plain else deepcopy(value[world])
     return info
 
 

@@ -347,6 +347,21 @@ def test_masks_say_which_keys_a_worlds_info_has() -> None:
     assert world_info(infos, 1) == {"deep": {"x": 4}}
 
 
+def test_an_info_of_a_world_is_its_own() -> None:
+    """A vector environment may write the infos of its next step into the same arrays."""
+    objects = np.array([[1], [2]], object)
+    objects[0, 0] = ["a"]
+    infos = {"row": np.ones((2, 3)), "one": np.arange(2), "objects": objects}
+    infos |= {f"_{name}": np.ones(2, bool) for name in infos}
+    info = world_info(infos, 0)
+    infos["row"][:] = 7
+    infos["one"][:] = 7
+    objects[0, 0].append("b")
+    assert info["row"].tolist() == [1, 1, 1]
+    assert info["one"] == 0
+    assert info["objects"].tolist() == [["a"]]
+
+
 def test_a_single_environment_is_refused_with_advice_that_works() -> None:
     """The advice was a keyword that `gym.make` refuses."""
     with pytest.raises(TypeError, match=r"gym.make_vec\(id, num_envs, autoreset_mode='SameStep'\)"):

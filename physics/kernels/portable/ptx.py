@@ -46,6 +46,54 @@ end:
   ret void
 }}
 """
+# LLVM would copy a record byte by byte on the card, whatever is known of its alignment. Records lie
+# as in C, and none overlaps another.
+_COPY_OF_BYTES = re.compile(
+    r"(?:tail )?call void @llvm\.mem(?:move|cpy)\.p0\.p0\.i64\(ptr [^%@]*(?P<target>[%@][\w.]+), "
+    r"ptr [^%@]*(?P<source>[%@][\w.]+), i64 (?P<size>\d+), i1 false\)"
+)
+_LEAST_COPY = 64  # bytes
+# Four words at once, so that the card does not wait for each; without "no-builtins" LLVM would make
+# it what it replaces.
+_COPY = """
+define internal void @copy_words(ptr noalias %target, ptr noalias %source, i64 %words)
+    noinline "no-builtins" {{
+  br label %test
+test:
+  %word = phi i64 [ 0, %0 ], [ %next, %four ], [ %following, %one ]
+  %left = sub i64 %words, %word
+  %many = icmp sge i64 %left, 4
+  br i1 %many, label %four, label %few
+four:
+  %s0 = getelementptr i64, ptr %source, i64 %word
+{loads}
+  %t0 = getelementptr i64, ptr %target, i64 %word
+{stores}
+  %next = add i64 %word, 4
+  br label %test
+few:
+  %any = icmp sge i64 %left, 1
+  br i1 %any, label %one, label %end
+one:
+  %from = getelementptr i64, ptr %source, i64 %word
+  %value = load i64, ptr %from, align 8
+  %to = getelementptr i64, ptr %target, i64 %word
+  store i64 %value, ptr %to, align 8
+  %following = add i64 %word, 1
+  br label %test
+end:
+  ret void
+}}
+""".format(
+    loads="\n".join(
+        f"  %p{n} = getelementptr i64, ptr %s0, i64 {n}\n  %v{n} = load i64, ptr %p{n}, align 8"
+        for n in range(4)
+    ),
+    stores="\n".join(
+        f"  %q{n} = getelementptr i64, ptr %t0, i64 {n}\n  store i64 %v{n}, ptr %q{n}, align 8"
+        for n in range(4)
+    ),
+)
 _PLACES = "\n".join(
     f"declare i32 @llvm.nvvm.read.ptx.sreg.{name}.x()" for name in ("tid", "ctaid", "ntid")
 )
@@ -84,9 +132,8 @@ def _assemble(code: str, entries: Sequence[Entry]) -> str:
     llvm.set_option("", "-nvptx-fma-level=0")
     machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu=ARCHITECTURE, opt=3)
     kernels = [_KERNEL.format(name=entry.name) for entry in entries]
-    module = llvm.parse_assembly(
-        _for_card(code, str(machine.target_data)) + _PLACES + "".join(kernels)
-    )
+    text = _for_card(code, str(machine.target_data))
+    module = llvm.parse_assembly("".join((text, _COPY, _PLACES, *kernels)))
     for entry in entries:
         module.get_function(entry.name).linkage = "internal"
     options = llvm.create_pipeline_tuning_options(speed_level=3)
@@ -102,17 +149,14 @@ def _for_card(code: str, layout: str) -> str:
     code = re.sub(r"^target datalayout = .*$", f'target datalayout = "{layout}"', code, flags=re.M)
     code = re.sub(r"^target triple = .*$", f'target triple = "{_TRIPLE}"', code, flags=re.M)
     code = re.sub(r'"(target-cpu|target-features|tune-cpu|probe-stack)"="[^"]*"', "", code)
-    # Records lie as in C. Numba does not tell LLVM, and the card would copy them byte by byte.
-    code = re.sub(
-        r"^.*@llvm\.mem(?:move|cpy)\..*$",
-        lambda line: re.sub(r"align 1 dereferenceable\((\d*[02468])\)", _aligned, line[0]),
-        code,
-        flags=re.M,
-    )
+    code = _COPY_OF_BYTES.sub(_copy_of_words, code)
     # The card has no library of C, but square roots of its own.
     return re.sub(r"\bcall ([^\n]*?)double @sqrt\(", r"call \1double @llvm.sqrt.f64(", code)
 
 
-def _aligned(match: "re.Match[str]") -> str:
-    """Return what is known of memory of so many bytes, of which records have a multiple of 8."""
-    return f"align {8 if int(match[1]) % 8 == 0 else 1} dereferenceable({match[1]})"
+def _copy_of_words(call: "re.Match[str]") -> str:
+    """Return the call that copies a record word by word, or the one that was found."""
+    size = int(call["size"])
+    if size % 8 or size < _LEAST_COPY:
+        return call[0]
+    return f"call void @copy_words(ptr {call['target']}, ptr {call['source']}, i64 {size // 8})"
