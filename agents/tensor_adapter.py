@@ -78,7 +78,9 @@ class TensorVecEnv(GymnasiumVecEnv):
 
     def observe(self) -> Tensor:
         """Return the latest observations, on the device."""
-        return self.env.unwrapped.observe()  # type: ignore[attr-defined, no-any-return]
+        native: ArkanoidTensorVectorEnv = self.env.unwrapped  # type: ignore[assignment]
+        observations: Tensor = native.observe()
+        return observations
 
     def play(self, actions: Tensor) -> TensorStep:
         """Step all worlds with actions on the device."""
@@ -92,7 +94,7 @@ class TensorVecEnv(GymnasiumVecEnv):
         ended = torch.stack([sums[0], sums[1], *kept, *sums[2:]])
         self._running *= ~done
         last: Any = infos["final_obs"]
-        return TensorStep(observations, rewards, terminated, truncated, last, ended)  # type: ignore[arg-type]
+        return TensorStep(observations, rewards, terminated, truncated, last, ended)
 
     def step_wait(self) -> Any:
         """Refuse: loops with arrays take the other environment."""
