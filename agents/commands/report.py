@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
+from ..experiment.programs import arkanoid
 from .arguments import add_trust
 from .evaluate import group_by_experiment
 
@@ -37,7 +38,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if len(group_by_experiment(models, overrides)) > 1:
         raise SettingsError(
             "a report is about one experiment: the runs differ in more than their seeds "
-            "(`arkanoid evaluate` compares different ones)"
+            f"(`{arkanoid('evaluate')}` compares different ones)"
         )
     from ..show.page import write_page
     from ..show.report import describe_agent

@@ -17,7 +17,8 @@ from tqdm import tqdm  # type: ignore[import-untyped]
 
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, quoted
+from ..experiment.files import cause
+from ..experiment.programs import arkanoid
 from ..experiment.provenance import weights_hash
 from ..experiment.runs import RunFolder
 from ..experiment.seeds import Purpose, spread_seeds
@@ -87,7 +88,7 @@ def _cannot_write(folder: RunFolder, error: OSError) -> str:
     reason = "the disk is full" if full else f"{what} failed ({cause(error)})"
     start = "free some space, then go on with" if full else "go on with"
     if folder.checkpoint.is_file():
-        return f"{folder.path}: {reason}; {start}: arkanoid train --resume {quoted(folder.path)}"
+        return f"{folder.path}: {reason}; {start}: {arkanoid('train', '--resume', folder.path)}"
     return f"{folder.path}: {reason} before the first checkpoint; start a new run"
 
 
@@ -178,7 +179,7 @@ def _train(
             validation.close()
         model.logger.close()
     outcome = INTERRUPTED if stop.interrupted else stop.reason or FINISHED
-    save_model(model, folder.model)
+    save_model(model, folder.model, experiment)
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
     folder.add_notes(outcome=outcome, timesteps=last, weights=hashed)
     return outcome
@@ -191,8 +192,8 @@ def check_resumable(folder: RunFolder) -> None:
     if outcome not in ("unfinished", INTERRUPTED):
         raise SettingsError(
             f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
-            f"to train on: arkanoid train --from {quoted(folder.path)}; "
-            f"to measure it: arkanoid evaluate {quoted(folder.path)}"
+            f"to train on: {arkanoid('train', '--from', folder.path)}; "
+            f"to measure it: {arkanoid('evaluate', folder.path)}"
         )
 
 
@@ -209,7 +210,7 @@ def _validation(
     return PeriodicValidation(
         experiment,
         callback_state.setdefault("validation", {}),
-        lambda model: save_model(model, folder.best),
+        lambda model: save_model(model, folder.best, experiment),
         stop.request,
         on_measure,
         warn,

@@ -74,12 +74,15 @@ def test_decisions_add_up_over_generations(child: RunFolder, tmp_path: Path) -> 
     assert lineage["decisions"] == 2048 + 1024
 
 
-def test_a_lone_model_needs_a_config(
+def test_a_lone_model_of_others_needs_a_config(
     parent: RunFolder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lone = tmp_path / "lone" / "mine.zip"
     lone.parent.mkdir()
-    shutil.copy(parent.model, lone)
+    with zipfile.ZipFile(parent.model) as ours, zipfile.ZipFile(lone, "w") as theirs:
+        for name in ours.namelist():
+            if name != "config.toml":
+                theirs.writestr(name, ours.read(name))
     assert "config.toml" in sentence(["train", "--from", str(lone)], capsys)
     words = settings(tmp_path / "runs", **{"training.timesteps": "256"})
     assert cli.main(["train", "quick", "--from", str(lone), *words]) == 0
