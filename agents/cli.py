@@ -114,7 +114,11 @@ def _run(words: list[str]) -> int:
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=__version__)
+    if words[:1] == ["help"]:
+        words = [*words[1:2], "--help"]
     chosen = next((word for word in words if not word.startswith("-")), None)
+    if chosen is None and words and words[0] not in ("-h", "--help", "--version"):
+        raise parser.unknown(words[0])
     if chosen is not None and chosen not in COMMANDS:
         near = close_to(chosen, COMMANDS)
         hint = f"did you mean {near}?" if near else f"the commands are {', '.join(COMMANDS)}"
@@ -197,8 +201,8 @@ def _how_to_start() -> str:
         return ""
     start = start_of(ARKANOID)
     return (
-        f"\n\nThis shell does not know the name {ARKANOID}. Type {start},\n"
-        f"or activate the environment first: {activate}"
+        f"\n\nThis shell does not know the name {ARKANOID}. Type its path, or activate the "
+        f"environment first:\n  {start}\n  {activate}"
     )
 
 

@@ -2,10 +2,13 @@
 
 import argparse
 import math
+import re
 import shutil
+import textwrap
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
-from typing import NoReturn
+from itertools import groupby
+from typing import Any, NoReturn
 
 from ..experiment.errors import SettingsError
 from ..experiment.numbers import parse_whole
@@ -19,6 +22,7 @@ LEVELS = (
 )
 # Lines are not longer, however wide the terminal is.
 _WIDEST = 100
+_HARD = "\xa0"  # a space at which no line ends
 
 
 class Parser(argparse.ArgumentParser):
@@ -55,10 +59,34 @@ class Parser(argparse.ArgumentParser):
 
 
 class Help(argparse.RawDescriptionHelpFormatter):
-    """Help that leaves the lines of descriptions alone, with the columns side by side."""
+    """Help that fits the terminal, with the columns side by side."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, max_help_position=24, width=help_width())
+
+    def add_argument(self, action: argparse.Action) -> None:
+        """Measure an argument; argparse forgets by how much the commands are indented."""
+        super().add_argument(action)
+        if action.nargs == argparse.PARSER:
+            self._action_max_length += self._indent_increment
+
+    def _format_usage(self, *arguments: Any) -> str:
+        """Fold a usage that is given as a text, but not inside brackets."""
+        text = super()._format_usage(*arguments).rstrip()
+        if "\n" not in text:
+            whole_ = re.sub(r"\[[^][]*\]", lambda part: part[0].replace(" ", _HARD), text)
+            text = textwrap.fill(
+                whole_, self._width, subsequent_indent=" " * 8, break_on_hyphens=False
+            ).replace(_HARD, " ")
+        return f"{text}\n\n"
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        """Fold paragraphs; lines that begin with a space stay as they are."""
+        parts = []
+        for is_plain, lines in groupby(text.splitlines(), lambda line: line[:1].strip() != ""):
+            joined = "\n".join(lines)
+            parts.append(textwrap.fill(joined, width) if is_plain else joined)
+        return "\n".join(parts)
 
 
 def help_width() -> int:
@@ -107,8 +135,11 @@ def number(least: float, most: float = math.inf) -> Callable[[str], float]:
 
 def positive(text: str) -> float:
     """Read a finite number above 0."""
-    value = number(0.0)(text)
-    if value == 0.0:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
         raise argparse.ArgumentTypeError(f"must be a number above 0, not {text!r}")
     return value
 

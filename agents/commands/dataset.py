@@ -23,8 +23,8 @@ _LOOK = "env."
 _EPILOG = """\
 PLAYER is a baseline (planner, ball-follower, ...), a run or model file, or *.replay files.
 
-  arkanoid dataset arkanoid/planner-v0 planner --config lite --level named --games 3
-  arkanoid dataset arkanoid/lite-v0 runs/lite-seed0-20260101-120000 --env.observation rgb
+  arkanoid dataset arkanoid/planner-v0 planner --config lite --level named
+  arkanoid dataset arkanoid/lite-v0 runs/lite-seed0 --env.observation rgb
   arkanoid dataset arkanoid/human-v0 monday.replay tuesday.replay
   arkanoid train lite --imitation.dataset arkanoid/planner-v0
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import check_new_folder
 from .arguments import add_trust, output_width
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_trust(parser)
     parser.epilog = (
         "The first run's own settings hold; --key value changes them, as in\n"
-        """--evaluation.suites '["training", "test", "named"]' --evaluation.level_episodes 20"""
+        """  --evaluation.suites '["test", "named"]' --evaluation.level_episodes 20"""
     )
 
 
@@ -43,6 +44,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     models = [ModelFile.find(name, arguments.trust) for name in arguments.models or [None]]
     experiment = models[0].experiment(overrides)
     agents = group_by_experiment(models, overrides)
+    if arguments.plots:
+        check_new_folder(Path(arguments.plots))
     from ..learn.model import load_policy
     from ..measure.comparison import as_json, as_tables, compare, count_games
     from ..measure.progress import GamesBar

@@ -14,12 +14,12 @@ from .arguments import LEVELS, NAMED, number
 _MOST = 100  # levels that are shown at once
 
 _EPILOG = """\
-  arkanoid levels                                   the named levels
-  arkanoid levels spiral                            draws one
-  arkanoid levels seed:7 --difficulty 0.8           draws a generated one
-  arkanoid levels spiral > mine.txt                 writes its file, which you can change
-  arkanoid levels mine.txt --png mine.png           draws your own as a picture
-  arkanoid play --level mine.txt                    and plays it
+  arkanoid levels                           lists the named levels
+  arkanoid levels spiral                    draws one
+  arkanoid levels seed:7 --difficulty 0.8   draws a generated one
+  arkanoid levels spiral > mine.txt         writes its file: change it
+  arkanoid levels mine.txt --png mine.png   draws your own as a picture
+  arkanoid play --level mine.txt            and plays it
 
 A terminal with colours shows a level in them; elsewhere the level's file is printed."""
 

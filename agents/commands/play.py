@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 _EPILOG = """\
 keys:
-  left, right, A, D, or the mouse   move the paddle
-  space, or the left button         fire: serve, release a caught ball, shoot, start, go on
+  left, right, A, D, mouse   move the paddle
+  space, left button         fire: serve, release a ball, shoot, start, go on
   P   pause          N   begin a game with the next round
   R   restart        F   fill the screen
   Esc quit"""

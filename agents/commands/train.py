@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
+from ..experiment.files import check_new_folder
 from ..experiment.packaged import packaged_configs
 from ..experiment.programs import arkanoid, command
 from .arguments import add_trust, help_width, output_width
@@ -78,8 +79,10 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
             )
         folder = RunFolder.of(arguments.resume, arguments.trust)
         experiment = folder.experiment()
+        folder.check_resumable()
     else:
         experiment, source = _new_experiment(arguments, overrides)
+        check_new_folder(Path(experiment.output))
     resumed = folder is not None
     # The environment reads its level files: the last of what can be wrong with the settings.
     worlds = make_worlds(experiment, 1)
@@ -90,7 +93,6 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     check_installed(arguments.track)
     # Only now, with all settings known to be right, come the slow imports.
     from ..learn.starting import check_source, inherit
-    from ..learn.training import check_resumable
 
     if folder is None:
         if source is not None:
@@ -101,7 +103,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
     with folder.locked():
         if resumed:
-            check_resumable(folder)
+            folder.check_resumable()
         tracking = Tracking(arguments.track, experiment, folder)
     status = 1
     try:
@@ -115,7 +117,8 @@ def _train(
     experiment: "Experiment", folder: "RunFolder", resumed: bool, tracking: "Tracking"
 ) -> int:
     """Train and measure; return the exit status."""
-    from ..learn.training import INTERRUPTED, train
+    from ..experiment.runs import INTERRUPTED
+    from ..learn.training import train
 
     outcome = train(experiment, folder, resumed, on_log=tracking.log)
     if outcome == INTERRUPTED:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, check_folder
+from ..experiment.files import cause, check_folder, check_new_folder
 from ..experiment.programs import arkanoid
 from .arguments import positive, whole
 
@@ -64,6 +64,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if arguments.budget is not None:
         space = replace(space, budget=check_budget(arguments.budget, "--budget"))
     _check(overrides)
+    folder = Path(arguments.study or Path(experiment.output) / f"{experiment.name}-tune")
+    check_new_folder(folder)
     if out is not None:
         check_folder(out)
     # Only now, with all settings known to be right, come the slow imports.
@@ -72,7 +74,6 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..learn.search.workers import run_search, usable_cores
 
     jobs = usable_cores() if arguments.jobs is None else arguments.jobs
-    folder = Path(arguments.study or Path(experiment.output) / f"{experiment.name}-tune")
     study = open_study(folder, space, experiment.seed)
     print(f"study    {folder}, {len(study.trials)} trials so far", flush=True)
     search = Search(arguments.config, tuple(overrides), space, folder, experiment.seed)

@@ -43,6 +43,15 @@ def check_folder(file: Path) -> None:
         raise SettingsError(f"{folder}: you may not write into this folder; name another one")
 
 
+def check_new_folder(folder: Path) -> None:
+    """Raise `SettingsError` unless a folder is there or can be made, and can be written into."""
+    nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not nearest.is_dir():
+        raise SettingsError(f"{folder}: {nearest} is no folder; name another place")
+    if not os.access(nearest, os.W_OK):
+        raise SettingsError(f"{folder}: you may not write into {nearest}; name another place")
+
+
 def check_picture(file: Path) -> None:
     """Raise `SettingsError` unless a PNG of this name can be written, as far as that shows now."""
     if file.suffix.lower() != ".png":

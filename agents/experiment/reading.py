@@ -226,6 +226,8 @@ def _read_config(config: str, suffix: str) -> tuple[str, str]:
         if config in packaged_configs(suffix) and not path.is_file():
             return f"config {config!r}", read_packaged(config, suffix)
         return config, read_limited(path, _LARGEST_CONFIG).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SettingsError(f"{config}: not a TOML file: it holds no text") from None
     except ValueError as error:
         raise SettingsError(f"{config}: not a TOML file: {error}") from None
     except OSError as error:

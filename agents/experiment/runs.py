@@ -20,6 +20,7 @@ from .errors import SettingsError
 from .files import cause
 from .notes import known_notes
 from .packed import has_weights, holds_settings, read_packed
+from .programs import arkanoid
 from .provenance import describe_origin
 from .reading import parse_toml, parse_toml_value, read_settings, read_toml, to_toml
 from .settings import Experiment
@@ -27,6 +28,9 @@ from .settings import Experiment
 _PACKAGE = __name__.partition(".")[0]
 # What decides the spaces of an environment, and so a network's inputs and outputs.
 _INTERFACE = ("observation", "landing", "size", "grey", "stack", "channels", "actions")
+# How a run has ended that can be resumed.
+UNFINISHED = "unfinished"
+INTERRUPTED = "interrupted"
 # A run's notes take about a thousand bytes, and eighty for each session.
 _LARGEST_NOTES = 2**20
 
@@ -58,7 +62,7 @@ class RunFolder:
             run = cls(_new_folder(Path(experiment.output), stem), trusted=True)
             write_atomically(run.config, to_toml(experiment).encode())
             run.add_notes(
-                **describe_origin(), seed=experiment.seed, outcome="unfinished", sessions=[]
+                **describe_origin(), seed=experiment.seed, outcome=UNFINISHED, sessions=[]
             )
         except OSError as error:
             raise SettingsError(f"'output' cannot be written to: {error}") from None
@@ -103,6 +107,17 @@ class RunFolder:
                 f"{self.packed or self.config}: 'env_id' = {table['env_id']!r} imports the module "
                 f"{module!r}, which can run any command on this computer; add --trust if you trust "
                 f"its author"
+            )
+
+    def check_resumable(self) -> None:
+        """Raise `SettingsError` if the run has ended."""
+        # If the notes are lost, the checkpoint is enough.
+        outcome = self.read_notes().get("outcome", UNFINISHED)
+        if outcome not in (UNFINISHED, INTERRUPTED):
+            raise SettingsError(
+                f"{self.path}: nothing to resume: the run has ended ({outcome}); "
+                f"to train on: {arkanoid('train', '--from', self.path)}; "
+                f"to measure it: {arkanoid('evaluate', self.path)}"
             )
 
     def read_notes(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from ..experiment.errors import SettingsError
 from ..experiment.files import cause
 from ..experiment.programs import arkanoid
 from ..experiment.provenance import weights_hash
-from ..experiment.runs import RunFolder
+from ..experiment.runs import INTERRUPTED, RunFolder
 from ..experiment.seeds import Purpose, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
@@ -38,7 +38,6 @@ from .starting import begin
 # Takes the number of decisions, and numbers by their names.
 Log = Callable[[int, dict[str, float]], None]
 
-INTERRUPTED = "interrupted"
 FINISHED = "finished"
 
 
@@ -70,7 +69,7 @@ def train(
     """
     with folder.locked():
         if resumed:
-            check_resumable(folder)
+            folder.check_resumable()
         venv = adapt(make_worlds(experiment, experiment.training.worlds))
         try:
             with _quiet_writer():
@@ -183,18 +182,6 @@ def _train(
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
     folder.add_notes(outcome=outcome, timesteps=last, weights=hashed)
     return outcome
-
-
-def check_resumable(folder: RunFolder) -> None:
-    """Raise `SettingsError` if the run has ended."""
-    # If the notes are lost, the checkpoint is enough.
-    outcome = folder.read_notes().get("outcome", "unfinished")
-    if outcome not in ("unfinished", INTERRUPTED):
-        raise SettingsError(
-            f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
-            f"to train on: {arkanoid('train', '--from', folder.path)}; "
-            f"to measure it: {arkanoid('evaluate', folder.path)}"
-        )
 
 
 def _validation(
