@@ -127,6 +127,7 @@ def _run(words: list[str]) -> int:
         dest="command", required=True, metavar="COMMAND", title="commands", parser_class=Parser
     )
     module: Any = None
+    chosen_parser = parser
     overrides: list[tuple[str, str]] = []
     for name, summary in COMMANDS.items():
         subparser = commands.add_parser(
@@ -140,13 +141,16 @@ def _run(words: list[str]) -> int:
         if name == chosen:
             module = import_module(f".commands.{name}", __package__)
             module.add_arguments(subparser)
+            chosen_parser = subparser
             subparser.epilog = f"{subparser.epilog or ''}{_how_to_start()}"
             if name not in _WITHOUT_SETTINGS:
                 words, overrides = split_overrides(words, subparser)
     if not words:
         parser.print_help()
         return 0
-    arguments = parser.parse_args(words)
+    arguments, left = parser.parse_known_args(words)
+    if left:
+        raise chosen_parser.unknown(left[0])
     status: int = module.run(arguments, overrides)
     return status
 
