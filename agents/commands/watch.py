@@ -25,8 +25,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.experiment(overrides)
-    words = ["film", *([Path(arguments.model)] if arguments.model else []), "game.gif"]
-    require_screen(f"a film needs none: {arkanoid(*words)}")
+    named = [Path(arguments.model)] if arguments.model else []
+    require_screen(f"a film needs none: {arkanoid('film', *named, 'game.gif')}")
     from ...envs.play.window import Window
     from ..measure.suites import WHOLE_GAMES, find_starts
 
