@@ -91,7 +91,8 @@ class Config:
         "which levels are played. ``'campaign'``: the named levels, the boss last, then generated "
         "ones without end; ``'train'`` or ``'test'``: generated from the training or test seeds; "
         "``'seed:7'``, ``'seeds:100-200'`` or a ``range``: generated from these seeds; the name of "
-        "a packaged level, the path of a level file, or a sequence of these: in turn, again and again",
+        "a packaged level, the path of a level file, or a sequence of these: in turn, again and "
+        "again",
     )
     difficulty: float | None = _keyword(
         None, "of generated levels, in [0, 1]; None: it rises from round to round"

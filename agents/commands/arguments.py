@@ -70,9 +70,9 @@ class Help(argparse.RawDescriptionHelpFormatter):
         if action.nargs == argparse.PARSER:
             self._action_max_length += self._indent_increment
 
-    def _format_usage(self, *arguments: Any) -> str:
+    def _format_usage(self, usage: Any, actions: Any, groups: Any, prefix: Any) -> str:
         """Fold a usage that is given as a text, but not inside brackets."""
-        text = super()._format_usage(*arguments).rstrip()
+        text = super()._format_usage(usage, actions, groups, prefix).rstrip()
         if "\n" not in text:
             whole_ = re.sub(r"\[[^][]*\]", lambda part: part[0].replace(" ", _HARD), text)
             text = textwrap.fill(
