@@ -5,8 +5,6 @@ Each subcommand is a module of `commands` with ``add_arguments(parser)`` and
 runs is imported: playing by hand needs none of the packages for training.
 """
 
-import argparse
-import itertools
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -15,8 +13,10 @@ from typing import Any
 from gymnasium.error import DependencyNotInstalled
 
 from ..version import __version__
+from .commands.arguments import Help, Parser, close_to
 from .experiment.errors import SettingsError
 from .experiment.files import cause, printable
+from .experiment.programs import ARKANOID, activation, command, start_of
 from .interrupts import INTERRUPTED, noted_interrupts
 from .output import OutputError, checked_output, harmless_notes
 
@@ -34,13 +34,8 @@ COMMANDS = {
     "film": "write a film of an agent at play",
     "report": "write one page about an agent: curves, tables, a film, settings",
 }
-# These take no settings, ``--key value``: argparse reads all their options.
+# These take no settings, ``--key value``.
 _WITHOUT_SETTINGS = {"play", "replay", "levels"}
-# Options of the other commands that are no settings: without and with a value.
-_FLAGS = {"--help", "--version", "--json", "--trust"}
-_OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
-_OPTIONS |= {"--budget", "--config", "--decisions", "--games-seed", "--from", "--games"}
-_OPTIONS |= {"--jobs", "--track", "--trials"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
@@ -90,15 +85,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _try(words: list[str]) -> int:
     """Run the command line; tell its mistakes in a sentence, and return the exit status."""
-    overrides: list[tuple[str, str]] = []
-    if not words or words[0] not in _WITHOUT_SETTINGS:
-        words, overrides = split_overrides(words)
     try:
-        return _run(words, overrides)
+        return _run(words)
     except SettingsError as error:
         return _fail(str(error), 2)
     except DependencyNotInstalled as error:
-        return _fail(str(error), 1)
+        return _fail(str(error).replace("`pip ", f"`{start_of('pip')} "), 1)
     except MemoryError as error:
         return _fail(f"not enough memory: {error}".removesuffix(": "), 2)
     except OSError as error:  # of a file that no command looks after
@@ -107,55 +99,115 @@ def _try(words: list[str]) -> int:
         package = (error.name or "").partition(".")[0]
         if package not in _EXTRAS:
             raise
-        command = f'pip install -e ".[{_EXTRAS[package]}]"'
-        return _fail(f"{package} is missing: run `{command}` in arkanoid's repository", 1)
+        install = f'{command("pip", "install", "-e")} ".[{_EXTRAS[package]}]"'
+        return _fail(f"{package} is missing: run `{install}` in arkanoid's repository", 1)
 
 
-def split_overrides(argv: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
-    """Split a command line into argparse's words and the settings ``--key value``.
-
-    ``--key=value`` means the same. A word that begins with ``--`` and is no option of a command is
-    a setting; its value may begin with a minus. Exits with a message if the value is missing.
-    """
-    words: list[str] = []
-    overrides: list[tuple[str, str]] = []
-    rest = iter(argv)
-    for word in rest:
-        key, equals, value = word.removeprefix("--").partition("=")
-        if not word.startswith("--") or word in _FLAGS:
-            words.append(word)
-        elif f"--{key}" in _OPTIONS:
-            words += [word] if equals else [word, *itertools.islice(rest, 1)]
-        elif equals:
-            overrides.append((key, value))
-        else:
-            text = next(rest, None)
-            if text is None:
-                sys.exit(_fail(f"{word} needs a value", 2))
-            overrides.append((key, text))
-    return words, overrides
-
-
-def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
+def _run(words: list[str]) -> int:
     """Parse the words and run the command; return its exit status."""
-    parser = argparse.ArgumentParser(prog="arkanoid", description="Arkanoid, and agents for it.")
+    parser = Parser(
+        prog=ARKANOID,
+        usage="%(prog)s COMMAND ...",
+        description="Arkanoid, and agents for it.",
+        formatter_class=Help,
+        epilog=f"{ARKANOID} COMMAND --help says more about one.{_how_to_start()}",
+        allow_abbrev=False,
+    )
     parser.add_argument("--version", action="version", version=__version__)
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    if words[:1] == ["help"]:
+        words = [*words[1:2], "--help"]
     chosen = next((word for word in words if not word.startswith("-")), None)
+    if chosen is None and words and words[0] not in ("-h", "--help", "--version"):
+        raise parser.unknown(words[0])
+    if chosen is not None and chosen not in COMMANDS:
+        near = close_to(chosen, COMMANDS)
+        hint = f"did you mean {near}?" if near else f"the commands are {', '.join(COMMANDS)}"
+        raise SettingsError(f"no command {chosen!r}; {hint}")
+    commands = parser.add_subparsers(
+        dest="command", required=True, metavar="COMMAND", title="commands", parser_class=Parser
+    )
     module: Any = None
+    chosen_parser = parser
+    overrides: list[tuple[str, str]] = []
     for name, summary in COMMANDS.items():
-        command = commands.add_parser(
+        subparser = commands.add_parser(
             name,
+            prog=f"{ARKANOID} {name}",
             help=summary,
             description=summary,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
+            formatter_class=Help,
+            allow_abbrev=False,
         )
         if name == chosen:
             module = import_module(f".commands.{name}", __package__)
-            module.add_arguments(command)
-    arguments = parser.parse_args(words)
+            module.add_arguments(subparser)
+            chosen_parser = subparser
+            subparser.epilog = f"{subparser.epilog or ''}{_how_to_start()}"
+            if name not in _WITHOUT_SETTINGS:
+                words, overrides = split_overrides(words, subparser)
+    if not words:
+        parser.print_help()
+        return 0
+    arguments, left = parser.parse_known_args(words)
+    if left:
+        raise chosen_parser.unknown(left[0])
     status: int = module.run(arguments, overrides)
     return status
+
+
+def split_overrides(
+    words: Sequence[str], parser: Parser
+) -> tuple[list[str], list[tuple[str, str]]]:
+    """Split a command line into the words of a command's parser and the settings ``--key value``.
+
+    ``--key=value`` means the same. A word that begins with ``--`` and is no option of the command
+    is a setting; its value may begin with a minus. Raises `SettingsError` if the value is missing,
+    or an option is meant.
+    """
+    options = {"--version", *parser.option_names()}
+    own: list[str] = []
+    overrides: list[tuple[str, str]] = []
+    rest = iter(words)
+    for word in rest:
+        name, equals, value = word.partition("=")
+        if not word.startswith("--") or name in options:
+            own.append(word)
+            if name in parser.option_names() and parser.takes_value(name) and not equals:
+                own += [text for text in [next(rest, None)] if text is not None]
+            continue
+        if _is_meant_for(name, parser):
+            raise parser.unknown(name)
+        if not equals:
+            following = next(rest, None)
+            if following is None:
+                raise SettingsError(f"{word} needs a value")
+            value = following
+        overrides.append((name.removeprefix("--"), value))
+    return own, overrides
+
+
+def _is_meant_for(name: str, parser: Parser) -> bool:
+    """Tell whether a word that is none of a parser's options is meant for one."""
+    if "." in name or close_to(name, parser.option_names()) is None:
+        return False
+    try:
+        from .experiment.reading import describe_settings
+        from .experiment.settings import Experiment
+    except ModuleNotFoundError:  # the command itself will say what is missing
+        return False
+    return name.removeprefix("--") not in describe_settings(Experiment)
+
+
+def _how_to_start() -> str:
+    """Return what a help says where the shell does not know the command by its name."""
+    activate = activation()
+    if activate is None:
+        return ""
+    start = start_of(ARKANOID)
+    return (
+        f"\n\nThis shell does not know the name {ARKANOID}. Type its path, or activate the "
+        f"environment first:\n  {start}\n  {activate}"
+    )
 
 
 def _fail(message: str, status: int) -> int:

@@ -90,8 +90,9 @@ class Config:
         "campaign",
         "which levels are played. ``'campaign'``: the named levels, the boss last, then generated "
         "ones without end; ``'train'`` or ``'test'``: generated from the training or test seeds; "
-        "``'seeds:100-200'`` or a ``range``: generated from these seeds; the name of a packaged "
-        "level, the path of a level file, or a sequence of these: in turn, again and again",
+        "``'seed:7'``, ``'seeds:100-200'`` or a ``range``: generated from these seeds; the name of "
+        "a packaged level, the path of a level file, or a sequence of these: in turn, again and "
+        "again",
     )
     difficulty: float | None = _keyword(
         None, "of generated levels, in [0, 1]; None: it rises from round to round"

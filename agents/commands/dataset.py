@@ -8,7 +8,7 @@ from ...envs.config import SEEN
 from ..experiment.datasets import Episode, Written, check_new, write_dataset
 from ..experiment.errors import SettingsError
 from ..experiment.seeds import Purpose, spread_seeds
-from .arguments import add_trust
+from .arguments import LEVELS, add_trust, whole
 from .train import DEFAULT_CONFIG
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ _LOOK = "env."
 _EPILOG = """\
 PLAYER is a baseline (planner, ball-follower, ...), a run or model file, or *.replay files.
 
-  arkanoid dataset arkanoid/planner-v0 planner --config lite --level named --games 3
-  arkanoid dataset arkanoid/lite-v0 runs/lite-seed0-20260101-120000 --env.observation rgb
+  arkanoid dataset arkanoid/planner-v0 planner --config lite --level named
+  arkanoid dataset arkanoid/lite-v0 runs/lite-seed0 --env.observation rgb
   arkanoid dataset arkanoid/human-v0 monday.replay tuesday.replay
   arkanoid train lite --imitation.dataset arkanoid/planner-v0
 
@@ -39,24 +39,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--config", help=f"the game that a baseline plays: as for train; default: {DEFAULT_CONFIG}"
     )
-    parser.add_argument(
-        "--level", help='where games begin, as "named" (all named levels) or "seeds:0-9"'
-    )
+    parser.add_argument("--level", help=f"where games begin: {LEVELS}")
     parser.add_argument(
         "--games",
-        type=_count,
+        type=whole(1),
         default=DEFAULT_GAMES,
         help=f"how many, on each level; default: {DEFAULT_GAMES}",
     )
     parser.add_argument(
         "--decisions",
-        type=_count,
+        type=whole(1),
         default=DEFAULT_DECISIONS,
         help=f"after so many a game is truncated; default: {DEFAULT_DECISIONS}",
     )
     parser.add_argument(
         "--games-seed",
-        type=int,
+        type=whole(0),
         default=0,
         metavar="N",
         help="of the games, which no training, validation or evaluation plays; default: 0",
@@ -69,8 +67,6 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Play, write and say what was written; return the exit status."""
     from ..experiment.settings import BASELINES
 
-    if arguments.games_seed < 0:
-        raise SettingsError(f"--games-seed must be at least 0, not {arguments.games_seed}")
     check_new(arguments.id)
     players = arguments.players
     if all(player.endswith(REPLAY) for player in players):
@@ -114,7 +110,7 @@ def _write_model(arguments: argparse.Namespace, overrides: list[tuple[str, str]]
         raise SettingsError("--config is for baselines: a model plays the game of its run")
     model = ModelFile.find(arguments.players[0], arguments.trust)
     others = [(key, text) for key, text in overrides if not _is_look(key)]
-    experiment = model.run.experiment(others)
+    experiment = model.experiment(others)
     looks = [(key, text) for key, text in overrides if _is_look(key)]
     # The network need not suit what the data set shows.
     any_network = [("network.features", "auto")] if looks else []
@@ -209,10 +205,3 @@ def _replayed(replays: "list[Replay]", keywords: dict[str, Any]) -> Iterator[Epi
 
 def _is_look(key: str) -> bool:
     return key.startswith(_LOOK) and key.removeprefix(_LOOK) in SEEN
-
-
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"must be at least 1; got {text}")
-    return value

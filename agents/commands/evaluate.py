@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
-from .arguments import add_trust
+from ..experiment.files import check_new_folder
+from .arguments import add_trust, output_width
 
 if TYPE_CHECKING:
     from ..experiment.runs import ModelFile
@@ -32,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_trust(parser)
     parser.epilog = (
         "The first run's own settings hold; --key value changes them, as in\n"
-        """--evaluation.suites '["training", "test", "named"]' --evaluation.level_episodes 20"""
+        """  --evaluation.suites '["test", "named"]' --evaluation.level_episodes 20"""
     )
 
 
@@ -41,20 +42,24 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..experiment.runs import ModelFile
 
     models = [ModelFile.find(name, arguments.trust) for name in arguments.models or [None]]
-    experiment = models[0].run.experiment(overrides)
+    experiment = models[0].experiment(overrides)
     agents = group_by_experiment(models, overrides)
+    if arguments.plots:
+        check_new_folder(Path(arguments.plots))
     from ..learn.model import load_policy
-    from ..measure.comparison import as_json, as_tables, compare
+    from ..measure.comparison import as_json, as_tables, compare, count_games
+    from ..measure.progress import GamesBar
 
     policies = {
         name: [load_policy(model, experiment) for model in group] for name, group in agents.items()
     }
-    comparison = compare(experiment, policies, lambda message: print(message, file=sys.stderr))
+    with GamesBar(count_games(experiment, len(models))) as bar:
+        comparison = compare(experiment, policies, bar)
     described = {name: [model.describe() for model in group] for name, group in agents.items()}
     if arguments.json:
         print(json.dumps(as_json(experiment, comparison, described), indent=2))
     else:
-        print(as_tables(experiment, comparison))
+        print(as_tables(experiment, comparison, output_width()))
     if arguments.plots:
         from ..show.plots import plot_comparison
 
@@ -82,7 +87,7 @@ def group_by_experiment(
             raise SettingsError(f"{model.path}: given twice; give each model once")
     groups: list[tuple[Experiment, list[ModelFile]]] = []
     for model in models:
-        experiment = replace(model.run.experiment(overrides), seed=0, output=".")
+        experiment = replace(model.experiment(overrides), seed=0, output=".")
         for known, group in groups:
             if experiment == known:
                 group.append(model)

@@ -1,11 +1,10 @@
 """`arkanoid film [MODEL] OUT`: a film of an agent at play; no display is needed."""
 
 import argparse
-import math
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
-from .arguments import add_level, add_model
+from .arguments import add_level, add_model, positive
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -17,24 +16,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("out", metavar="OUT", help="the file, .mp4 or .gif")
     add_level(parser)
     parser.add_argument(
-        "--seconds", type=float, help="of the game; default: evaluation.film_seconds"
+        "--seconds", type=positive, help="of the game; default: evaluation.film_seconds"
     )
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Write the film; return the exit status."""
     from ..experiment.runs import ModelFile
+    from ..show.film import check_film
 
-    model = ModelFile.find(arguments.model, arguments.trust)
-    experiment = model.run.experiment(overrides)
     out = Path(arguments.out)
-    if arguments.seconds is not None and not 0 < arguments.seconds < math.inf:
-        raise SettingsError(f"--seconds must be a number above 0, not {arguments.seconds}")
+    check_film(out)
+    model = ModelFile.find(arguments.model, arguments.trust)
+    experiment = model.experiment(overrides)
     from ..measure.suites import WHOLE_GAMES, find_starts
-    from ..show.frames import film_policy
 
     start = find_starts(experiment, arguments.level)[0] if arguments.level else WHOLE_GAMES
     from ..learn.model import load_policy
+    from ..show.frames import film_policy
 
     try:
         film_policy(experiment, load_policy(model, experiment), out, start, arguments.seconds)

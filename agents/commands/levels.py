@@ -7,26 +7,29 @@ from pathlib import Path
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
+from ..experiment.files import check_picture, level_mistake
+from ..experiment.programs import arkanoid
+from .arguments import LEVELS, NAMED, number
+
+_MOST = 100  # levels that are shown at once
 
 _EPILOG = """\
-LEVEL is a named round, the path of a level file, or seed:N for a generated level.
-
-  arkanoid levels                                   the named levels
-  arkanoid levels spiral                            draws one
-  arkanoid levels seed:7 --difficulty 0.8           draws a generated one
-  arkanoid levels spiral > mine.txt                 writes its file, which you can change
-  arkanoid levels mine.txt --png mine.png           draws your own as a picture
-  arkanoid play --level mine.txt                    and plays it
+  arkanoid levels                           lists the named levels
+  arkanoid levels spiral                    draws one
+  arkanoid levels seed:7 --difficulty 0.8   draws a generated one
+  arkanoid levels spiral > mine.txt         writes its file: change it
+  arkanoid levels mine.txt --png mine.png   draws your own as a picture
+  arkanoid play --level mine.txt            and plays it
 
 A terminal with colours shows a level in them; elsewhere the level's file is printed."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.add_argument("levels", metavar="LEVEL", nargs="*", help="name, file or seed:N")
+    parser.add_argument("levels", metavar="LEVEL", nargs="*", help=LEVELS)
     parser.add_argument(
         "--difficulty",
-        type=float,
+        type=number(0.0, 1.0),
         metavar="D",
         help="of generated levels, from 0 to 1 (default: 0.5)",
     )
@@ -40,23 +43,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Print or draw; return the exit status."""
+    if arguments.png is not None:
+        check_picture(Path(arguments.png))
     # The game imports Numba, which is slow.
     from ...envs.play.gallery import DIFFICULTY, list_levels
 
     difficulty = DIFFICULTY if arguments.difficulty is None else arguments.difficulty
     try:
         if arguments.png is not None:
-            _draw(arguments.levels, difficulty, arguments.png)
+            _draw(_each(arguments.levels or [NAMED]), difficulty, Path(arguments.png))
         elif arguments.levels:
-            _print(arguments.levels, difficulty)
+            _print(_each(arguments.levels), difficulty)
         else:
             print(list_levels())
-            print("\nto draw one: arkanoid levels NAME; a generated one: arkanoid levels seed:7")
+            print(f"\nto draw one: {arkanoid('levels spiral')}")
+            print(f"a generated one: {arkanoid('levels seed:7')}")
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
-        raise SettingsError(str(error)) from None
+        raise SettingsError(level_mistake("", error)) from None
     return 0
+
+
+def _each(names: list[str]) -> list[str]:
+    """Return levels one by one: ``seed:N`` for each generated one, and the named ones."""
+    from ...envs.levels.files import CAMPAIGN
+    from ...envs.levels.plan import seed_range
+
+    each: list[str] = []
+    for name in names:
+        seeds = None if name == NAMED else seed_range(name)
+        if seeds is not None and seeds.stop - seeds.start > _MOST:
+            raise SettingsError(
+                f"{name} are {seeds.stop - seeds.start:,} levels; at most {_MOST} are shown at "
+                f"once, as in seeds:{seeds.start}-{seeds.start + _MOST - 1}"
+            )
+        if name == NAMED:
+            each += CAMPAIGN
+        else:
+            each += [name] if seeds is None else [f"seed:{seed}" for seed in seeds]
+    return each
 
 
 def _print(names: list[str], difficulty: float) -> None:
@@ -77,11 +103,10 @@ def _print(names: list[str], difficulty: float) -> None:
         print("\n\n".join(level_in_colours(level, colours) for level in levels))
 
 
-def _draw(names: list[str], difficulty: float, path: str) -> None:
+def _draw(names: list[str], difficulty: float, path: Path) -> None:
     """Write a picture of levels into a file."""
     from ...envs.draw.png import png_bytes
-    from ...envs.levels.files import CAMPAIGN
     from ...envs.play.gallery import draw_levels
 
-    write_atomically(Path(path), png_bytes(draw_levels(names or CAMPAIGN, difficulty)))
+    write_atomically(path, png_bytes(draw_levels(names, difficulty)))
     print(path)

@@ -11,16 +11,18 @@ import gymnasium as gym
 import platformdirs
 
 from ..experiment.errors import SettingsError
-from ..experiment.files import quoted
+from ..experiment.files import level_mistake, quoted
+from ..experiment.programs import arkanoid
+from .arguments import LEVELS, NAMED, whole
+from .screen import require_screen
 
 if TYPE_CHECKING:
     from ...envs.batch.replays import Replay
 
-
 _EPILOG = """\
 keys:
-  left, right, A, D, or the mouse   move the paddle
-  space, or the left button         fire: serve, release a caught ball, shoot, start, go on
+  left, right, A, D, mouse   move the paddle
+  space, left button         fire: serve, release a ball, shoot, start, go on
   P   pause          N   begin a game with the next round
   R   restart        F   fill the screen
   Esc quit"""
@@ -31,8 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--level",
         metavar="LEVEL",
-        help="a named round, where the campaign begins; or a level file or seed:N, which is played "
-        "again and again (see: arkanoid levels)",
+        help=f"{LEVELS}; a name is where the campaign begins, a file or seed:N is played again and "
+        "again",
     )
     parser.add_argument(
         "--difficulty",
@@ -41,13 +43,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of generated levels, from 0 to 1 (default: 0.5 for seed:N, otherwise rising)",
     )
     parser.add_argument(
-        "--seed", type=int, metavar="N", help="of the random numbers (default: a new one each time)"
+        "--seed",
+        type=whole(),
+        metavar="N",
+        help="of the random numbers (default: a new one each time)",
     )
     parser.add_argument("--lite", action="store_true", help="without capsules and enemies")
     parser.add_argument(
         "--speed", type=float, metavar="X", help="factor on the ball's speed (default: 1)"
     )
-    parser.add_argument("--lives", type=int, metavar="N", help="balls to begin with (default: 3)")
+    parser.add_argument(
+        "--lives", type=whole(), metavar="N", help="balls to begin with (default: 3)"
+    )
     parser.add_argument(
         "--save",
         metavar="FILE",
@@ -59,6 +66,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Play until the window is closed; return the exit status (130 after Ctrl-C)."""
+    level = None if arguments.level == NAMED else arguments.level
+    film = arkanoid("film", "game.gif", *([] if level is None else ["--level", quoted(level)]))
+    require_screen(f"a film of the agent that comes with the package needs none: {film}")
     # The game imports Numba, which is slow.
     from ...envs.play.by_hand import hand_config, play_by_hand
 
@@ -70,12 +80,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     seed = secrets.randbits(62) if arguments.seed is None else arguments.seed
     save = _Saver(arguments.save)
     try:
-        config, options = hand_config(arguments.level, arguments.difficulty, **keywords)
+        config, options = hand_config(level, arguments.difficulty, **keywords)
         interrupted = play_by_hand(config, options, seed, save)
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
-        raise SettingsError(str(error)) from None
+        raise SettingsError(level_mistake("", error)) from None
     return 130 if interrupted else 0
 
 
@@ -97,7 +107,7 @@ class _Saver:
         )
         replay.save(path)
         result = replay.result
-        again = f"arkanoid replay {quoted(path)}"
+        again = arkanoid("replay", path)
         print(f"score {result.score}, round {result.round}; watch it: {again}")
 
 

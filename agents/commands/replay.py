@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import printable
+from ..experiment.files import check_folder, printable
+from ..experiment.programs import arkanoid
 from ..show.film import RATES, write_film
+from .arguments import number, whole
+from .screen import require_screen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a replay, as `arkanoid play` saves it")
     parser.add_argument(
         "--speed",
-        type=_speed,
+        type=number(1 / _FASTEST, _FASTEST),
         default=1.0,
         metavar="X",
         help="factor on the speed (default: 1)",
@@ -51,20 +54,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--from",
         dest="start",
-        type=_seconds,
+        type=number(0.0),
         default=0.0,
         metavar="S",
         help="begin at this second",
     )
-    parser.add_argument("--to", dest="stop", type=_seconds, metavar="S", help="end at this second")
     parser.add_argument(
-        "--height", type=int, default=512, metavar="N", help="of exported pictures (default: 512)"
+        "--to", dest="stop", type=number(0.0), metavar="S", help="end at this second"
+    )
+    parser.add_argument(
+        "--height",
+        type=whole(2),
+        default=512,
+        metavar="N",
+        help="of exported pictures (default: 512)",
     )
     parser.epilog = _EPILOG
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Show, export or check; return the exit status (1: another game; 130 after Ctrl-C)."""
+    if arguments.export is not None:
+        _check_export(Path(arguments.export))
     # The game imports Numba, which is slow.
     from ...envs.batch.playback import ReplayDivergedError
     from ...envs.batch.replays import Replay
@@ -75,6 +86,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
             return _verify(replay)
         if arguments.export is not None:
             return _export(replay, arguments)
+        words = ("replay", Path(arguments.file), "--export game.gif")
+        require_screen(f"a film needs none: {arkanoid(*words)}")
         from ...envs.play.by_hand import view_replay
 
         return 130 if view_replay(replay, arguments.speed) else 0
@@ -98,6 +111,13 @@ def _verify(replay: "Replay") -> int:
     return 0
 
 
+def _check_export(path: Path) -> None:
+    """Raise `SettingsError` unless a film or picture of this name can be written."""
+    if path.suffix.lower() not in (*RATES, ".png"):
+        raise SettingsError(f"{path}: exports are {', '.join(RATES)} or .png")
+    check_folder(path)
+
+
 def _export(replay: "Replay", arguments: argparse.Namespace) -> int:
     path = Path(arguments.export)
     suffix = path.suffix.lower()
@@ -105,13 +125,11 @@ def _export(replay: "Replay", arguments: argparse.Namespace) -> int:
     if suffix in RATES:
         stride = max(1, math.ceil(rate / RATES[suffix]))
         write_film(path, _pictures(replay, arguments, stride), rate / stride)
-    elif suffix == ".png":
+    else:
         from ...envs.draw.png import png_bytes
 
         *_, picture = _pictures(replay, arguments, 0)
         write_atomically(path, png_bytes(picture))
-    else:
-        raise SettingsError(f"{path}: exports are {', '.join(RATES)} or .png")
     print(path)
     return 0
 
@@ -147,19 +165,3 @@ def _pictures(
         # A film to the end plays all of the replay, which then compares the result.
         if index == last < replay.result.decisions:
             return
-
-
-def _speed(text: str) -> float:
-    value = float(text)
-    if not 1 / _FASTEST <= value <= _FASTEST:
-        raise argparse.ArgumentTypeError(
-            f"must be a number from {1 / _FASTEST:g} to {_FASTEST:g}; got {text}"
-        )
-    return value
-
-
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not 0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"must be a number, at least 0; got {text}")
-    return value

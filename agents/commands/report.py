@@ -4,6 +4,8 @@ import argparse
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import check_folder
+from ..experiment.programs import arkanoid
 from .arguments import add_trust
 from .evaluate import group_by_experiment
 
@@ -33,11 +35,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     out = Path(arguments.out)
     if out.suffix not in (".html", ".md"):
         raise SettingsError(f"{out}: a report's name must end in .html or .md")
+    check_folder(out)
     models = [ModelFile.find(name, arguments.trust) for name in arguments.runs]
     if len(group_by_experiment(models, overrides)) > 1:
         raise SettingsError(
             "a report is about one experiment: the runs differ in more than their seeds "
-            "(`arkanoid evaluate` compares different ones)"
+            f"(`{arkanoid('evaluate')}` compares different ones)"
         )
     from ..show.page import write_page
     from ..show.report import describe_agent

@@ -20,7 +20,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if overrides:
         raise SettingsError("a run is reproduced with its own settings: give no others")
     from ..experiment.lineage import begin_like, describe_lineage
-    from ..experiment.runs import RunFolder
+    from ..experiment.runs import INTERRUPTED, RunFolder
 
     folder = RunFolder.of(arguments.run, arguments.trust)
     expected = folder.read_notes().get("weights")
@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         raise SettingsError(f"{folder.path}: the run has not ended; there is nothing to compare")
     path = folder.path.resolve()
     experiment = folder.experiment([("name", f"{path.name}-again"), ("output", str(path.parent))])
-    from ..learn.training import INTERRUPTED, train
+    from ..learn.training import train
 
     lineage = describe_lineage(folder.read_notes().get("lineage"))
     again = RunFolder.create(experiment)

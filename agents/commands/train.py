@@ -2,6 +2,9 @@
 
 import argparse
 import json
+import shlex
+import sys
+import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -9,11 +12,13 @@ from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import quoted
+from ..experiment.files import check_new_folder
 from ..experiment.packaged import packaged_configs
-from .arguments import add_trust
+from ..experiment.programs import arkanoid, command
+from .arguments import add_trust, help_width, output_width
 
 if TYPE_CHECKING:
+    from ..experiment.reading import Setting
     from ..experiment.runs import RunFolder
     from ..experiment.settings import Experiment
     from ..show.tracking import Tracking
@@ -53,7 +58,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "own environment variables say otherwise; may be given twice",
     )
     add_trust(parser)
-    parser.epilog = "\n".join(["settings:", *_settings_help()])
+    parser.epilog = "\n".join(
+        ["settings, with their defaults, as a shell takes them:", *_settings_help()]
+    )
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
@@ -68,12 +75,14 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         if arguments.config is not None or arguments.source is not None or overrides:
             raise SettingsError(
                 "--resume uses the run's own settings: give no others; to train on with others, or "
-                "longer: arkanoid train --from RUN --key value"
+                f"longer: {arkanoid('train --from RUN --key value')}"
             )
         folder = RunFolder.of(arguments.resume, arguments.trust)
         experiment = folder.experiment()
+        folder.check_resumable()
     else:
         experiment, source = _new_experiment(arguments, overrides)
+        check_new_folder(Path(experiment.output))
     resumed = folder is not None
     # The environment reads its level files: the last of what can be wrong with the settings.
     worlds = make_worlds(experiment, 1)
@@ -84,7 +93,6 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     check_installed(arguments.track)
     # Only now, with all settings known to be right, come the slow imports.
     from ..learn.starting import check_source, inherit
-    from ..learn.training import check_resumable
 
     if folder is None:
         if source is not None:
@@ -95,7 +103,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
     with folder.locked():
         if resumed:
-            check_resumable(folder)
+            folder.check_resumable()
         tracking = Tracking(arguments.track, experiment, folder)
     status = 1
     try:
@@ -109,12 +117,13 @@ def _train(
     experiment: "Experiment", folder: "RunFolder", resumed: bool, tracking: "Tracking"
 ) -> int:
     """Train and measure; return the exit status."""
-    from ..learn.training import INTERRUPTED, train
+    from ..experiment.runs import INTERRUPTED
+    from ..learn.training import train
 
     outcome = train(experiment, folder, resumed, on_log=tracking.log)
     if outcome == INTERRUPTED:
         print(f"stopped; the model is {folder.model}")
-        print(f"resume   arkanoid train --resume {quoted(folder.path)}")
+        print(f"resume   {arkanoid('train', '--resume', folder.path)}")
         return 130
     print(f"training: {outcome}")
     _show(experiment, folder, tracking)
@@ -126,7 +135,7 @@ def _new_experiment(
 ) -> "tuple[Experiment, Path | None]":
     """Return the experiment of a new run, and the model that it begins with, if it does."""
     from ..experiment.lineage import find_model
-    from ..experiment.runs import RunFolder
+    from ..experiment.runs import ModelFile
     from ..experiment.settings import Imitation, load_experiment
 
     if arguments.source is None:
@@ -136,7 +145,7 @@ def _new_experiment(
         if arguments.config is not None:
             experiment = load_experiment(arguments.config, overrides)
         else:
-            experiment = RunFolder.of(str(source.parent), arguments.trust).experiment(overrides)
+            experiment = ModelFile.find(str(source), arguments.trust).run.experiment(overrides)
             # The model has learned from the data set already.
             experiment = replace(experiment, imitation=Imitation())
     if experiment.imitation.dataset and source is not None:
@@ -151,23 +160,32 @@ def _show(experiment: "Experiment", folder: "RunFolder", tracking: "Tracking") -
     """Measure the saved model, film it, and print the results and where everything is."""
     from ..experiment.runs import ModelFile
     from ..learn.model import load_policy
-    from ..measure.comparison import AGENT, as_json, as_tables, compare
+    from ..measure.comparison import AGENT, as_json, as_tables, compare, count_games
+    from ..measure.progress import GamesBar
     from ..show.frames import film_policy
 
     model = ModelFile.find(str(folder.path), folder.trusted)
     policy = load_policy(model, experiment)
-    comparison = compare(experiment, {AGENT: [policy]})
+    _note("measuring: the agent and the baselines play the same games")
+    with GamesBar(count_games(experiment, 1)) as bar:
+        comparison = compare(experiment, {AGENT: [policy]}, bar)
     results = as_json(experiment, comparison, {AGENT: [model.describe()]})
     try:
         write_atomically(folder.evaluation, (json.dumps(results, indent=2) + "\n").encode())
+        _note("filming a game")
         film_policy(experiment, policy, folder.film)
     except OSError as error:
         raise SettingsError(f"{folder.path}: the results cannot be written: {error}") from None
     tracking.keep(results, model.path)
-    print(f"\n{as_tables(experiment, comparison)}\n")
-    log = quoted(folder.log)
-    print(f"model    {model.path}\nlogs     {folder.log}  (tensorboard --logdir {log})")
-    print(f"film     {folder.film}\nagain    arkanoid evaluate {quoted(folder.path)}")
+    print(f"\n{as_tables(experiment, comparison, output_width())}\n")
+    print(f"model    {model.path}\nfilm     {folder.film}")
+    print(f"again    {arkanoid('evaluate', folder.path)}")
+    print(f"watch    {arkanoid('watch', folder.path)}")
+    print(f"curves   {command('tensorboard', '--logdir', folder.log)}")
+
+
+def _note(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
 def _settings_help() -> Iterator[str]:
@@ -177,8 +195,31 @@ def _settings_help() -> Iterator[str]:
     except ModuleNotFoundError as error:
         yield f"  they are shown here once the extra `train` is installed ({error.name} is missing)"
         return
+    width = help_width()
     for key, setting in describe_settings(Experiment).items():
         if setting.is_free:
-            yield f"  --{key}.KEY  {setting.meaning}"
+            yield f"  --{key}.KEY VALUE"
+            text = setting.meaning
         else:
-            yield f"  --{key}  {setting.meaning} ({setting.expected}; default {setting.default!r})"
+            yield from _folded(f"--{key} {_typed(setting)}", width, 2)
+            text = f"{setting.meaning} ({setting.expected})"
+        yield from _folded(text, width, 6)
+
+
+def _typed(setting: "Setting") -> str:
+    """Return a setting's default as one types it: TOML, and a text without its quotes."""
+    from ..experiment.reading import to_toml_value
+
+    return shlex.quote(setting.default if setting.is_text else to_toml_value(setting.default))
+
+
+def _folded(text: str, width: int, indent: int) -> list[str]:
+    space = " " * indent
+    return textwrap.wrap(
+        text,
+        width,
+        initial_indent=space,
+        subsequent_indent=" " * 6,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

@@ -1,8 +1,11 @@
 """`arkanoid watch [MODEL]`: shows an agent at play in a window."""
 
 import argparse
+from pathlib import Path
 
+from ..experiment.programs import arkanoid
 from .arguments import add_level, add_model
+from .screen import require_screen
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -10,7 +13,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.usage = "%(prog)s [MODEL] [--level LEVEL] [--trust] [--key value ...]"
     add_model(parser)
     add_level(parser)
-    parser.epilog = "The evaluation's games follow each other until you close the window."
+    parser.epilog = (
+        "The evaluation's games follow each other, on the levels in turn, until you close the\n"
+        "window."
+    )
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
@@ -18,11 +24,13 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..experiment.runs import ModelFile
 
     model = ModelFile.find(arguments.model, arguments.trust)
-    experiment = model.run.experiment(overrides)
+    experiment = model.experiment(overrides)
+    named = [Path(arguments.model)] if arguments.model else []
+    require_screen(f"a film needs none: {arkanoid('film', *named, 'game.gif')}")
     from ...envs.play.window import Window
     from ..measure.suites import WHOLE_GAMES, find_starts
 
-    start = find_starts(experiment, arguments.level)[0] if arguments.level else WHOLE_GAMES
+    starts = find_starts(experiment, arguments.level) if arguments.level else (WHOLE_GAMES,)
     from ..learn.model import load_policy
     from ..show.frames import can_be_smooth, frame_rate, play_frames
 
@@ -32,7 +40,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     try:
         episode = 0
         while not window.closed:
-            frame = None
+            frame, start = None, starts[episode % len(starts)]
             for frame in play_frames(experiment, policy, start, smooth, episode):
                 if not window.show(frame.picture):
                     break

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ...envs.reading import read_limited
 from .errors import SettingsError
 from .files import cause
+from .programs import arkanoid, command
 
 _ID = re.compile(r"(?:[\w-]+/)*[\w-]+-v\d+")
 _METADATA = "metadata.json"
@@ -68,7 +69,7 @@ def check_new(name: str) -> None:
     if _place(name).exists():
         raise SettingsError(
             f"{name}: there is such a data set; take another name or version, or remove it: "
-            f"minari delete {name}"
+            f"{command('minari', 'delete', name)}"
         )
 
 
@@ -183,8 +184,8 @@ def _find(name: str) -> Path:
         if (folder / _METADATA).is_file():
             return folder
     raise SettingsError(
-        f"'imitation.dataset' = {name!r}: no such data set here; `minari list local` lists them, "
-        f"`arkanoid dataset` writes one"
+        f"'imitation.dataset' = {name!r}: no such data set here; "
+        f"`{command('minari', 'list local')}` lists them, `{arkanoid('dataset')}` writes one"
     )
 
 

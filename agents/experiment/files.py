@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from .errors import SettingsError
+
 
 def quoted(path: Path | str) -> str:
     """Return a path as one word of a shell's command line."""
@@ -28,6 +30,41 @@ def shown(value: object) -> str:
         return f"{value!r:.200}"
     except (RecursionError, ValueError):  # an integer of thousands of digits
         return f"a {type(value).__name__}"
+
+
+def check_folder(file: Path) -> None:
+    """Raise `SettingsError` unless there is a folder in which a new file can be written."""
+    folder = file.parent
+    if not folder.is_dir():
+        raise SettingsError(f"{folder}: there is no such folder; make it first")
+    if file.is_dir():
+        raise SettingsError(f"{file}: that is a folder; give the name of a file in it")
+    if not os.access(folder, os.W_OK):
+        raise SettingsError(f"{folder}: you may not write into this folder; name another one")
+
+
+def check_new_folder(folder: Path) -> None:
+    """Raise `SettingsError` unless a folder is there or can be made, and can be written into."""
+    nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not nearest.is_dir():
+        raise SettingsError(f"{folder}: {nearest} is no folder; name another place")
+    if not os.access(nearest, os.W_OK):
+        raise SettingsError(f"{folder}: you may not write into {nearest}; name another place")
+
+
+def check_picture(file: Path) -> None:
+    """Raise `SettingsError` unless a PNG of this name can be written, as far as that shows now."""
+    if file.suffix.lower() != ".png":
+        raise SettingsError(f"{file}: pictures are written as PNG; let the name end in .png")
+    check_folder(file)
+
+
+def level_mistake(name: str, error: Exception) -> str:
+    """Return a sentence about a level that cannot be played, and how levels are named."""
+    told = str(error)
+    if told.startswith("no level"):
+        told += " Generated levels are seed:7, seeds:0-9, train or test."
+    return told if name in told else f"level {name!r}: {told}"
 
 
 def cause(error: OSError) -> str:

@@ -19,6 +19,7 @@ from ...envs.config import plain
 from ...envs.reading import read_limited
 from .errors import SettingsError
 from .files import shown
+from .numbers import as_whole, parse_whole
 from .packaged import CONFIG, packaged_configs, read_packaged
 
 T = TypeVar("T")
@@ -57,6 +58,7 @@ class Setting:
         default: the value if none is given.
         is_text: whether a command line's words are the value, and not TOML.
         is_free: whether this is a free table.
+        is_whole: whether the value is an integer, or a list of integers.
     """
 
     key: str
@@ -65,6 +67,7 @@ class Setting:
     default: Any
     is_text: bool
     is_free: bool
+    is_whole: bool
 
 
 def describe_settings(schema: type[Any]) -> dict[str, Setting]:
@@ -85,7 +88,16 @@ def _setting(key: str, entry: Mapping[str, Any]) -> Setting:
     kind = entry["type"]
     expected = "a table" if kind == "object" else _expected(entry)
     default = entry.get("default", {})
-    return Setting(key, expected, entry["description"], default, kind == "string", kind == "object")
+    is_whole = "integer" in (kind, entry.get("items", {}).get("type"))
+    return Setting(
+        key,
+        expected,
+        entry["description"],
+        default,
+        kind == "string",
+        kind == "object",
+        is_whole,
+    )
 
 
 def _expected(entry: Mapping[str, Any]) -> str:
@@ -117,6 +129,7 @@ def read_settings(
     for key, text in overrides:
         setting = _find(known, key, COMMAND_LINE)
         _set(values, key, text if setting.is_text else parse_toml_value(text))
+    _make_whole(values, known)
     try:
         return TypeAdapter(schema).validate_python(values)
     except ValidationError as error:
@@ -133,6 +146,7 @@ def check_value(schema: type[Any], key: str, value: Any, source: str) -> None:
     _find(known, key, source)
     values: dict[str, Any] = {}
     _set(values, key, value)
+    _make_whole(values, known)
     try:
         TypeAdapter(schema).validate_python(values)
     except ValidationError as error:
@@ -146,6 +160,13 @@ def to_toml(settings: Any) -> str:
     return tomli_w.dumps(_without_none(asdict(settings)))
 
 
+def to_toml_value(value: Any) -> str:
+    """Return a setting's value as TOML, in one line."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(to_toml_value, value))}]"
+    return tomli_w.dumps({"value": plain(value)}).removeprefix("value = ").rstrip()
+
+
 def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
     """Return a table as TOML has it, which knows nothing like None."""
     return {
@@ -156,9 +177,15 @@ def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def parse_toml_value(text: str) -> Any:
-    """Return what the text means in TOML, or the text itself if it means nothing there."""
+    """Return what the text means in TOML, or the text itself if it means nothing there.
+
+    ``1e6`` is an integer here.
+    """
+    integer = parse_whole(text)
+    if integer is not None:
+        return integer
     try:
-        table = _parse_toml(f"value = {text}")
+        table = parse_toml(f"value = {text}")
     except (ValueError, RecursionError):
         return text
     # A line break in the text could smuggle in more than the one value.
@@ -172,12 +199,12 @@ def read_toml(config: str, suffix: str = CONFIG) -> tuple[str, dict[str, Any]]:
     """
     source, text = _read_config(config, suffix)
     try:
-        return source, _parse_toml(text)
+        return source, parse_toml(text)
     except (ValueError, RecursionError) as error:  # also for huge numbers and deep nesting
         raise SettingsError(f"{source}: not a TOML file: {error}") from None
 
 
-def _parse_toml(text: str) -> dict[str, Any]:
+def parse_toml(text: str) -> dict[str, Any]:
     """Return the content of a TOML text, in a time that grows with its length.
 
     Raises ValueError or RecursionError if it is no TOML or has a key of many parts.
@@ -199,6 +226,8 @@ def _read_config(config: str, suffix: str) -> tuple[str, str]:
         if config in packaged_configs(suffix) and not path.is_file():
             return f"config {config!r}", read_packaged(config, suffix)
         return config, read_limited(path, _LARGEST_CONFIG).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SettingsError(f"{config}: not a TOML file: it holds no text") from None
     except ValueError as error:
         raise SettingsError(f"{config}: not a TOML file: {error}") from None
     except OSError as error:
@@ -225,6 +254,17 @@ def _set(values: dict[str, Any], key: str, value: Any) -> None:
         values[key] = value
     elif isinstance(values.setdefault(table, {}), dict):
         values[table][name] = value
+
+
+def _make_whole(values: dict[str, Any], known: Mapping[str, Setting]) -> None:
+    """Replace floats without a fraction where integers belong: ``1e6`` is a million."""
+    for key, setting in known.items():
+        table, _, name = key.rpartition(".")
+        place = values.get(table) if table else values
+        if not setting.is_whole or not isinstance(place, dict) or name not in place:
+            continue
+        value = place[name]
+        place[name] = [as_whole(one) for one in value] if type(value) is list else as_whole(value)
 
 
 def _explained(

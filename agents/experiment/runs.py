@@ -5,7 +5,7 @@ import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from importlib import resources
 from itertools import count
@@ -13,16 +13,24 @@ from pathlib import Path
 from typing import Any
 
 from ...envs.atomic import remove_unfinished, write_atomically
+from ...envs.config import plain
 from ...envs.reading import read_limited
 from .. import pretrained
 from .errors import SettingsError
 from .files import cause
 from .notes import known_notes
+from .packed import has_weights, holds_settings, read_packed
+from .programs import arkanoid
 from .provenance import describe_origin
-from .reading import read_toml, to_toml
-from .settings import Experiment, load_experiment
+from .reading import parse_toml, parse_toml_value, read_settings, read_toml, to_toml
+from .settings import Experiment
 
 _PACKAGE = __name__.partition(".")[0]
+# What decides the spaces of an environment, and so a network's inputs and outputs.
+_INTERFACE = ("observation", "landing", "size", "grey", "stack", "channels", "actions")
+# How a run has ended that can be resumed.
+UNFINISHED = "unfinished"
+INTERRUPTED = "interrupted"
 # A run's notes take about a thousand bytes, and eighty for each session.
 _LARGEST_NOTES = 2**20
 
@@ -36,10 +44,12 @@ class RunFolder:
         trusted: whether reading the run may run its author's code: import the module that its
             ``env_id`` names, and unpickle its model. True for runs that this process made, and
             where the user says so.
+        packed: of a model that lies alone: its file, which holds its run's settings, too.
     """
 
     path: Path
     trusted: bool = False
+    packed: Path | None = None
 
     @classmethod
     def create(cls, experiment: Experiment) -> "RunFolder":
@@ -52,7 +62,7 @@ class RunFolder:
             run = cls(_new_folder(Path(experiment.output), stem), trusted=True)
             write_atomically(run.config, to_toml(experiment).encode())
             run.add_notes(
-                **describe_origin(), seed=experiment.seed, outcome="unfinished", sessions=[]
+                **describe_origin(), seed=experiment.seed, outcome=UNFINISHED, sessions=[]
             )
         except OSError as error:
             raise SettingsError(f"'output' cannot be written to: {error}") from None
@@ -75,18 +85,39 @@ class RunFolder:
         Raises `SettingsError` if the settings are wrong, or if their ``env_id`` names a module and
         the run is not trusted.
         """
+        source, table = self._read_settings()
         if not self.trusted:
-            self._refuse_module()
-        return load_experiment(str(self.config), overrides or [])
+            self._refuse_module(table)
+        return read_settings(Experiment, table, source, overrides or [])
 
-    def _refuse_module(self) -> None:
+    def _read_settings(self) -> tuple[str, dict[str, Any]]:
+        """Return where the settings come from, for messages, and their tables."""
+        if self.packed is None:
+            return read_toml(str(self.config))
+        try:
+            return f"the settings in {self.packed}", parse_toml(read_packed(self.packed))
+        except (ValueError, RecursionError) as error:
+            raise SettingsError(f"{self.packed}: its settings are damaged: {error}") from None
+
+    def _refuse_module(self, table: dict[str, Any]) -> None:
         """Raise `SettingsError` if reading the settings would import a module."""
-        _, table = read_toml(str(self.config))
         module, colon, _ = str(table.get("env_id", "")).partition(":")
         if colon and module != _PACKAGE:
             raise SettingsError(
-                f"{self.config}: 'env_id' = {table['env_id']!r} imports the module {module!r}, "
-                f"which can run any command on this computer; add --trust if you trust its author"
+                f"{self.packed or self.config}: 'env_id' = {table['env_id']!r} imports the module "
+                f"{module!r}, which can run any command on this computer; add --trust if you trust "
+                f"its author"
+            )
+
+    def check_resumable(self) -> None:
+        """Raise `SettingsError` if the run has ended."""
+        # If the notes are lost, the checkpoint is enough.
+        outcome = self.read_notes().get("outcome", UNFINISHED)
+        if outcome not in (UNFINISHED, INTERRUPTED):
+            raise SettingsError(
+                f"{self.path}: nothing to resume: the run has ended ({outcome}); "
+                f"to train on: {arkanoid('train', '--from', self.path)}; "
+                f"to measure it: {arkanoid('evaluate', self.path)}"
             )
 
     def read_notes(self) -> dict[str, Any]:
@@ -229,17 +260,48 @@ class ModelFile:
             SettingsError: there is no model.
         """
         path = pretrained_run() if name is None else Path(name)
-        folder = path if path.is_dir() or not path.exists() else path.parent
-        run = RunFolder.of(str(folder), trusted)
-        wanted = path
         if path.is_dir():
-            wanted = run.best if run.best.is_file() else run.model
-        if not wanted.is_file():
+            run = RunFolder.of(str(path), trusted)
+            path = run.best if run.best.is_file() else run.model
+            if not path.is_file():
+                raise SettingsError(f"{name}: no trained model there: the training has not ended")
+        elif not path.is_file():
             raise SettingsError(
-                f"{name}: no trained model there; give the folder of a run, which holds "
-                f"{run.model.name} or {run.best.name}"
+                f"{name}: there is no such file or folder; give the folder of a run, or a model's "
+                f".zip file"
             )
-        return cls(run, wanted)
+        else:
+            run = RunFolder(path.parent, trusted)
+        _check_model(path, run)
+        if not run.config.is_file():
+            run = replace(run, packed=path)
+            _check_settings(path)
+        return cls(run, path)
+
+    def experiment(self, overrides: list[tuple[str, str]] | None = None) -> Experiment:
+        """Return the experiment in which the model plays: its run's, changed by overrides.
+
+        Raises `SettingsError` as `RunFolder.experiment`, and if the overrides change what the model
+        sees or what it can do: only a model that stable-baselines3 reads, which needs trust, can
+        have another network than its run.
+        """
+        if self.run.trusted or not overrides:
+            return self.run.experiment(overrides)
+        config = self.run.experiment().config
+        for key, text in overrides:
+            table, _, name = key.partition(".")
+            if table == "env" and name in _INTERFACE:
+                own = getattr(config, name)
+                if plain(parse_toml_value(text)) != plain(own):
+                    raise _refused(self.path, name, own, f"leave out --{key}")
+        experiment = self.run.experiment(overrides)
+        for name in _INTERFACE:
+            own = getattr(config, name)
+            if getattr(experiment.config, name) != own:
+                raise _refused(
+                    self.path, name, own, f"choose another env_id than {experiment.env_id}"
+                )
+        return experiment
 
     def describe(self) -> dict[str, Any]:
         """Return what tells this model from others, as JSON takes it."""
@@ -252,6 +314,42 @@ class ModelFile:
             "seed": self.run.experiment().seed,
             "inputs": self.run.experiment().inputs,
         }
+
+
+def _refused(path: Path, name: str, own: Any, hint: str) -> SettingsError:
+    return SettingsError(
+        f"{path}: the model was trained with 'env.{name}' = {plain(own)!r} and plays with nothing "
+        f"else: {hint}"
+    )
+
+
+def _check_model(path: Path, run: RunFolder) -> None:
+    """Raise `SettingsError` if a file holds no model, as far as that shows without torch."""
+    try:
+        if has_weights(path):
+            return
+        reason = "no model"
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be read: {cause(error)}") from None
+    except ValueError:
+        reason = "a damaged model" if path in (run.model, run.best) else "no model"
+    hint = (
+        f"give the folder of its run: {path.parent}"
+        if run.config.is_file()
+        else ("give the folder of a run, or a model's .zip file")
+    )
+    if path in (run.model, run.best):
+        hint = "replace it with a copy, or train again"
+    raise SettingsError(f"{path}: this is {reason}; {hint}")
+
+
+def _check_settings(path: Path) -> None:
+    """Raise `SettingsError` if a model that lies alone does not say how it was trained."""
+    if not holds_settings(path):
+        raise SettingsError(
+            f"{path}: the file does not say which game and network it is for: put the config.toml "
+            f"of its run beside it"
+        )
 
 
 def pretrained_run() -> Path:

@@ -1,18 +1,20 @@
 """Small callbacks of a training: statistics, the progress bar, and stopping."""
 
 import math
-import os
+from shutil import get_terminal_size
 from typing import Any
 
 import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
-from tqdm import tqdm  # type: ignore[import-untyped]
 
 from ..measure.episodes import FINAL_KEYWORDS, SUMMED_KEYWORDS
+from ..measure.progress import make_bar
 from .checkpoint_form import STOP
 
-# Statistics of the latest episodes that the progress bar shows, and its names for them.
+# Statistics of the latest episodes that the progress bar shows, and its names for them; the last
+# one only where there is room.
 _SHOWN = {"r": "return", "hits": "bricks", "rounds_cleared": "rounds"}
+_ROOM = 100  # columns
 
 
 class GameStatistics(BaseCallback):
@@ -39,23 +41,18 @@ class ProgressBar(BaseCallback):
         # Rollouts are played to their end: the last one may exceed the budget.
         rollout = self.model.n_steps * self.training_env.num_envs  # type: ignore[attr-defined]
         total = math.ceil(self.locals["total_timesteps"] / rollout) * rollout
-        self._bar = tqdm(
-            initial=self.model.num_timesteps,
-            total=max(total, self.model.num_timesteps),
-            unit=" decisions",
-            unit_scale=True,
-            # A terminal redraws the bar; a file gets few lines.
-            mininterval=0.2 if os.isatty(2) else 10.0,
-        )
+        done = self.model.num_timesteps
+        self._bar = make_bar(max(total, done), done)
 
     def _on_step(self) -> bool:
         self._bar.update(self.model.num_timesteps - self._bar.n)
         return True
 
     def _on_rollout_end(self) -> None:
+        wide = get_terminal_size().columns >= _ROOM
         means = {name: recent_mean(self.model, key) for key, name in _SHOWN.items()}
-        shown = {name: f"{mean:.2f}" for name, mean in means.items() if mean is not None}
-        self._bar.set_postfix(shown, refresh=False)
+        shown = [f"{name} {mean:.2f}" for name, mean in means.items() if mean is not None]
+        self._bar.set_postfix_str(", ".join(shown[: len(_SHOWN) if wide else -1]), refresh=False)
 
     def _on_training_end(self) -> None:
         self.close()

@@ -20,7 +20,8 @@ from ...envs.atomic import write_atomically
 from ...envs.reading import read_limited
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, quoted
+from ..experiment.files import cause
+from ..experiment.programs import arkanoid
 from ..experiment.provenance import memory_gib
 from ..experiment.settings import Experiment
 from ..experiment.worlds import native
@@ -199,10 +200,10 @@ def resume(path: Path, model: PPO, venv: GymnasiumVecEnv, experiment: Experiment
 
 def _damaged(path: Path, reason: str) -> SettingsError:
     """Return the error for a checkpoint that does not belong to its run."""
-    config = quoted(path.parent / "config.toml")
+    anew = arkanoid("train", path.parent / "config.toml")
     return SettingsError(
         f"{path}: the checkpoint cannot be read ({reason}): replace it with a copy, or start a new "
-        f"run: arkanoid train {config}"
+        f"run: {anew}"
     )
 
 

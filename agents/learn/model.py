@@ -18,7 +18,9 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
+from ..experiment.packed import SETTINGS, WEIGHTS
 from ..experiment.provenance import memory_gib
+from ..experiment.reading import to_toml
 from ..experiment.runs import ModelFile
 from ..experiment.seeds import Purpose, spread_seed
 from ..experiment.settings import Experiment, Ppo
@@ -30,9 +32,6 @@ from .tensors import is_like, read_entry, read_tensors
 
 # What stable-baselines3 would save, and only a training needs.
 _OF_THE_TRAINING = ("_last_obs", "_last_episode_starts", "ep_info_buffer", "ep_success_buffer")
-
-# The file of the weights in stable-baselines3's zip file.
-_WEIGHTS = "policy.pth"
 
 
 def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
@@ -94,10 +93,11 @@ def worlds_device(experiment: Experiment) -> str | None:
     return device.type if device.type == "cuda" else None
 
 
-def save_model(model: PPO, path: Path) -> None:
-    """Write the model to ``path``, atomically; `PPO.load` reads it.
+def save_model(model: PPO, path: Path, experiment: Experiment) -> None:
+    """Write the model and its settings to ``path``, atomically; `PPO.load` reads it.
 
-    The optimiser's state, twice as large as the weights, is left out: playing does not need it.
+    With the settings in it, the file is enough to play. The optimiser's state, twice as large as
+    the weights, is left out: playing does not need it.
     """
     policy: Any = model.policy
     used = policy.optimizer
@@ -109,6 +109,8 @@ def save_model(model: PPO, path: Path) -> None:
         model.save(buffer, exclude=_OF_THE_TRAINING)
     finally:
         policy.optimizer = used
+    with zipfile.ZipFile(buffer, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(SETTINGS, to_toml(experiment))
     write_atomically(path, buffer.getbuffer())
 
 
@@ -239,9 +241,9 @@ def _read_weights(path: Path, expected: dict[str, torch.Tensor]) -> dict[str, to
     # Each tensor also has a name, a header and padding.
     limit = size + 4096 * (len(expected) + 1)
     with zipfile.ZipFile(path) as archive:
-        if _WEIGHTS not in archive.namelist():
-            raise ValueError(f"there is no {_WEIGHTS} in it")
-        weights = read_tensors(read_entry(archive, _WEIGHTS, limit))
+        if WEIGHTS not in archive.namelist():
+            raise ValueError(f"there is no {WEIGHTS} in it")
+        weights = read_tensors(read_entry(archive, WEIGHTS, limit))
     if not isinstance(weights, dict) or weights.keys() != expected.keys():
         raise ValueError("they belong to another network")
     for name, tensor in weights.items():

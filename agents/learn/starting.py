@@ -78,7 +78,7 @@ def _begin(model: PPO, experiment: Experiment, folder: RunFolder) -> None:
     elif experiment.imitation.dataset:
         demonstrations = read_demonstrations(experiment, model)
         result = clone(model, demonstrations, experiment)
-        save_model(model, folder.start)
+        save_model(model, folder.start, experiment)
         folder.add_notes(
             lineage={
                 "kind": DATASET,

@@ -17,9 +17,10 @@ from tqdm import tqdm  # type: ignore[import-untyped]
 
 from ..adapter import GymnasiumVecEnv
 from ..experiment.errors import SettingsError
-from ..experiment.files import cause, quoted
+from ..experiment.files import cause
+from ..experiment.programs import arkanoid
 from ..experiment.provenance import weights_hash
-from ..experiment.runs import RunFolder
+from ..experiment.runs import INTERRUPTED, RunFolder
 from ..experiment.seeds import Purpose, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
@@ -37,7 +38,6 @@ from .starting import begin
 # Takes the number of decisions, and numbers by their names.
 Log = Callable[[int, dict[str, float]], None]
 
-INTERRUPTED = "interrupted"
 FINISHED = "finished"
 
 
@@ -69,7 +69,7 @@ def train(
     """
     with folder.locked():
         if resumed:
-            check_resumable(folder)
+            folder.check_resumable()
         device = worlds_device(experiment)
         venv = adapt(make_worlds(experiment, experiment.training.worlds, device=device))
         try:
@@ -88,7 +88,7 @@ def _cannot_write(folder: RunFolder, error: OSError) -> str:
     reason = "the disk is full" if full else f"{what} failed ({cause(error)})"
     start = "free some space, then go on with" if full else "go on with"
     if folder.checkpoint.is_file():
-        return f"{folder.path}: {reason}; {start}: arkanoid train --resume {quoted(folder.path)}"
+        return f"{folder.path}: {reason}; {start}: {arkanoid('train', '--resume', folder.path)}"
     return f"{folder.path}: {reason} before the first checkpoint; start a new run"
 
 
@@ -179,22 +179,10 @@ def _train(
             validation.close()
         model.logger.close()
     outcome = INTERRUPTED if stop.interrupted else stop.reason or FINISHED
-    save_model(model, folder.model)
+    save_model(model, folder.model, experiment)
     hashed = None if outcome == INTERRUPTED else weights_hash(model.policy.state_dict())
     folder.add_notes(outcome=outcome, timesteps=last, weights=hashed)
     return outcome
-
-
-def check_resumable(folder: RunFolder) -> None:
-    """Raise `SettingsError` if the run has ended."""
-    # If the notes are lost, the checkpoint is enough.
-    outcome = folder.read_notes().get("outcome", "unfinished")
-    if outcome not in ("unfinished", INTERRUPTED):
-        raise SettingsError(
-            f"{folder.path}: nothing to resume: the run has ended ({outcome}); "
-            f"to train on: arkanoid train --from {quoted(folder.path)}; "
-            f"to measure it: arkanoid evaluate {quoted(folder.path)}"
-        )
 
 
 def _validation(
@@ -210,7 +198,7 @@ def _validation(
     return PeriodicValidation(
         experiment,
         callback_state.setdefault("validation", {}),
-        lambda model: save_model(model, folder.best),
+        lambda model: save_model(model, folder.best, experiment),
         stop.request,
         on_measure,
         warn,

@@ -1,7 +1,7 @@
 """The agent against the baselines: what `evaluate` measures and shows."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from gymnasium.vector import VectorEnv
@@ -43,10 +43,28 @@ Results = dict[str, NDArray[np.float64]]
 Comparison = dict[str, dict[str, Results]]
 
 
+class Progress(Protocol):
+    """Something that shows how far a comparison has come."""
+
+    def name(self, what: str) -> None:
+        """Take who plays next."""
+
+    def ended(self, games: int) -> None:
+        """Take how many games have ended since the last call."""
+
+
+class _Silence:
+    def name(self, what: str) -> None:
+        pass
+
+    def ended(self, games: int) -> None:
+        pass
+
+
 def compare(
     experiment: Experiment,
     agents: Mapping[str, Sequence[Policy]],
-    tell: Callable[[str], None] = lambda message: None,
+    progress: Progress | None = None,
 ) -> Comparison:
     """Let agents and baselines play the episodes of the experiment's evaluation.
 
@@ -57,49 +75,77 @@ def compare(
         experiment: says what is played, and which baselines play it.
         agents: by their names; each is one model, or several that were trained with different
             seeds.
-        tell: gets a message about who plays next.
+        progress: is told who plays, and how many games have ended, of `count_games`.
 
     Raises:
         ValueError: an agent has the name of a baseline.
     """
     if not agents.keys().isdisjoint(BASELINES):
         raise ValueError("an agent has the name of a baseline")
+    told = progress or _Silence()
     comparison: Comparison = {}
     for suite_name, suite in make_suites(experiment).items():
         results: dict[str, Results] = {}
         for name, models in agents.items():
-            tell(f"{suite_name}: {name}")
-            results[name] = _stacked([_play_agent(experiment, suite, model) for model in models])
-        for name in experiment.evaluation.baselines:
-            if name == "planner" and suite.whole_games:
-                continue  # it loses hardly a ball, and a game would go on for hours
-            tell(f"{suite_name}: {name}")
-            results[name] = _stacked([_play_baseline(experiment, suite, name)])
+            told.name(f"{suite_name}: {name}")
+            results[name] = _stacked(
+                [_play_agent(experiment, suite, model, told.ended) for model in models]
+            )
+        for name in _baselines(experiment, suite):
+            told.name(f"{suite_name}: {name}")
+            results[name] = _stacked([_play_baseline(experiment, suite, name, told.ended)])
         comparison[suite_name] = results
     return comparison
 
 
+def count_games(experiment: Experiment, models: int) -> int:
+    """Return how many games `compare` plays for so many models."""
+    return sum(
+        len(suite.starts)
+        * (
+            models * suite.episodes
+            + sum(_episodes(experiment, suite, name) for name in _baselines(experiment, suite))
+        )
+        for suite in make_suites(experiment).values()
+    )
+
+
+def _baselines(experiment: Experiment, suite: Suite) -> list[str]:
+    """Return who else plays a suite."""
+    # The planner loses hardly a ball, and a whole game would go on for hours.
+    return [
+        name
+        for name in experiment.evaluation.baselines
+        if not (name == "planner" and suite.whole_games)
+    ]
+
+
+def _episodes(experiment: Experiment, suite: Suite, baseline: str) -> int:
+    """Return how many episodes of each level a baseline plays."""
+    most = experiment.evaluation.planner_episodes if baseline == "planner" else suite.episodes
+    return min(suite.episodes, most)
+
+
 def _play_agent(
-    experiment: Experiment, suite: Suite, policy: Policy
+    experiment: Experiment, suite: Suite, policy: Policy, ended: Callable[[int], None]
 ) -> dict[str, NDArray[np.float64]]:
-    return _play(experiment, suite, suite.episodes, experiment.game, lambda worlds: policy)
+    return _play(experiment, suite, suite.episodes, experiment.game, lambda worlds: policy, ended)
 
 
 def _play_baseline(
-    experiment: Experiment, suite: Suite, name: str
+    experiment: Experiment, suite: Suite, name: str, ended: Callable[[int], None]
 ) -> dict[str, NDArray[np.float64]]:
     """Play the same games with the observation that baselines understand."""
-    settings = experiment.evaluation
-    planned = name == "planner"
-    episodes = min(suite.episodes, settings.planner_episodes) if planned else suite.episodes
+    episodes = _episodes(experiment, suite, name)
     config = experiment.config.of_the_game()
-    seed = spread_seed(settings.seed, Purpose.EVALUATION_POLICY)
+    seed = spread_seed(experiment.evaluation.seed, Purpose.EVALUATION_POLICY)
     return _play(
         experiment,
         suite,
         episodes,
         config,
         lambda worlds: make_baseline(name, worlds, seed),
+        ended,
     )
 
 
@@ -109,6 +155,7 @@ def _play(
     episodes: int,
     config: Config,
     make_policy: Callable[[VectorEnv[Any, Any, Any]], Policy],
+    ended: Callable[[int], None],
 ) -> dict[str, NDArray[np.float64]]:
     """Play a suite with the policy that is made for its worlds."""
     worlds = make_worlds(experiment, len(suite.starts) * episodes, config)
@@ -119,6 +166,7 @@ def _play(
             spread_seeds(experiment.evaluation.seed, Purpose.EVALUATION, episodes),
             suite.starts,
             suite.whole_games,
+            ended,
         )
     finally:
         worlds.close()
@@ -144,17 +192,20 @@ def level_interval(samples: NDArray[np.float64], level: int) -> Interval:
     return bootstrap_interval(of_level.mean(axis=1) if len(samples) > 1 else of_level[0])
 
 
-def as_tables(experiment: Experiment, comparison: Comparison) -> str:
-    """Return a comparison as text: of each suite all policies, then the cleared rate by level."""
+def as_tables(experiment: Experiment, comparison: Comparison, width: int) -> str:
+    """Return a comparison as text: of each suite all policies, then the cleared rate by level.
+
+    Lines have at most ``width`` letters: the columns of a wide table follow below each other.
+    """
     suites = make_suites(experiment)
     parts = []
     for name, results in comparison.items():
         starts, heading = suites[name].starts, describe_suite(name, suites[name])
         for statistic, title in TITLES.items():
-            table = _aligned(summary_rows(results, statistic, ""))
-            parts.append(f"{heading}; {title} ± 95 % bootstrap interval\n\n{table}")
+            table = _aligned(summary_rows(results, statistic, ""), width)
+            parts.append(f"{heading}; {title} ± 95 % interval\n\n{table}")
         if len(starts) > 1:
-            table = _aligned(_cleared_rows(starts, results))
+            table = _aligned(_cleared_rows(starts, results), width)
             parts.append(f"{name}: cleared rate by level\n\n{table}")
     return "\n\n".join(parts)
 
@@ -185,13 +236,27 @@ def _cleared_rows(
     return rows
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> str:
-    """Return rows of text as a table; the first row is its heading."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows
-    ]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
+def _aligned(rows: Sequence[Sequence[str]], width: int) -> str:
+    """Return rows of text as a table; the first row is its heading, the first column a name.
+
+    What does not fit into the width follows in further tables with the same names.
+    """
+    names, *columns = (
+        [*map(str.ljust if at == 0 else str.rjust, column, [max(map(len, column))] * len(column))]
+        for at, column in enumerate(zip(*rows, strict=True))
+    )
+    tables: list[list[list[str]]] = []
+    for column in columns:
+        if not tables or sum(len(one[0]) + 2 for one in [*tables[-1], column]) - 2 > width:
+            tables.append([names])
+        tables[-1].append(column)
+    return "\n\n".join(_ruled(table) for table in tables)
+
+
+def _ruled(columns: Sequence[Sequence[str]]) -> str:
+    """Return columns of texts of equal lengths, with a line below their headings."""
+    head, *lines = ("  ".join(row) for row in zip(*columns, strict=True))
+    return "\n".join([head, "-" * len(head), *lines])
 
 
 def as_json(

@@ -1,6 +1,6 @@
 """Playing whole episodes with a policy, one per seed, many at once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -35,6 +35,7 @@ def play_episodes(
     seeds: Sequence[int],
     starts: Sequence[EpisodeStart] = (WHOLE_GAMES,),
     whole_games: bool = True,
+    ended: Callable[[int], None] = lambda games: None,
 ) -> dict[str, NDArray[np.float64]]:
     """Play one episode in each world, equally many on each level; return their measures.
 
@@ -47,6 +48,7 @@ def play_episodes(
         seeds: of each level's episodes.
         starts: how episodes begin, one for each level.
         whole_games: whether an episode lasts until the game is over, or until its level is cleared.
+        ended: gets after each step how many episodes have ended with it.
 
     Returns:
         For each of `MEASURES` an array [episodes, levels].
@@ -71,6 +73,7 @@ def play_episodes(
         measured["cleared"][playing] = measured["rounds_cleared"][playing] > 0
         ends = over[playing] if whole_games else over[playing] | (measured["cleared"][playing] > 0)
         playing = playing[~ends]
+        ended(int(ends.sum()))
     return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
 
 

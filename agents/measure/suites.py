@@ -8,6 +8,7 @@ import numpy as np
 
 from ...envs.levels.plan import TEST_SEEDS, campaign_names, check_boss, seed_range
 from ..experiment.errors import SettingsError
+from ..experiment.files import level_mistake
 from ..experiment.settings import Experiment
 
 # Stands for all named levels of the experiment's game.
@@ -89,7 +90,7 @@ def find_starts(
         try:
             starts += _starts_of(experiment, name, at_most)
         except (OSError, ValueError) as error:
-            raise SettingsError(f"level {name!r}: {error}") from None
+            raise SettingsError(level_mistake(str(name), error)) from None
     return tuple(starts)
 
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from ...envs.atomic import replace_atomically
 from ..experiment.errors import SettingsError
+from ..experiment.files import check_folder
+from ..experiment.programs import command
 
 Picture = NDArray[np.uint8]  # [height, width, 3]
 
@@ -33,8 +35,7 @@ def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
         ModuleNotFoundError: Pillow is not installed.
         OSError: the file cannot be written; what was there before stays.
     """
-    if path.suffix not in RATES:
-        raise SettingsError(f"{path}: a film is written as {' or '.join(RATES)}")
+    check_film(path)
     rest = iter(pictures)
     first = next(rest, None)
     if first is None:
@@ -43,6 +44,15 @@ def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
     replace_atomically(
         path, lambda unfinished: write(unfinished, itertools.chain([first], rest), rate)
     )
+
+
+def check_film(path: Path) -> None:
+    """Raise `SettingsError` unless a film of this name can be written, as far as that shows now."""
+    if path.suffix not in RATES:
+        raise SettingsError(
+            f"{path}: a film's name ends in {' or '.join(RATES)}; give it after the model, if any"
+        )
+    check_folder(path)
 
 
 def _write_gif(path: Path, pictures: Iterator[Picture], rate: float) -> None:
@@ -69,7 +79,8 @@ def _write_mp4(path: Path, pictures: Iterator[Picture], rate: float) -> None:
         from imageio_ffmpeg import count_frames_and_secs, write_frames
     except ModuleNotFoundError:
         raise SettingsError(
-            "to write .mp4, run `pip install imageio-ffmpeg`; .gif needs only the extra `train`"
+            f"to write .mp4, run `{command('pip', 'install imageio-ffmpeg')}`; .gif needs only the "
+            f"extra `train`"
         ) from None
     first = next(pictures)
     height, width, _ = first.shape

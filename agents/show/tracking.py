@@ -17,6 +17,7 @@ from typing import Any, Protocol
 
 from ..experiment.errors import SettingsError
 from ..experiment.files import quoted
+from ..experiment.programs import command
 from ..experiment.reading import to_toml
 from ..experiment.runs import RunFolder
 from ..experiment.settings import Experiment
@@ -74,7 +75,7 @@ class WeightsAndBiases:
         self._run.define_metric("*", step_metric="decisions")
         self.where = f"{folder.path / 'wandb'}"
         if mode == "offline":
-            self.where += f"  (wandb sync {quoted(folder.path / 'wandb')}/offline-run-*)"
+            self.where += f"  ({command('wandb', 'sync', folder.path / 'wandb')}/offline-run-*)"
 
     def log(self, step: int, numbers: Mapping[str, float]) -> None:
         """Keep numbers that were measured after ``step`` decisions."""
@@ -113,7 +114,7 @@ class MLflow:
             self.id = self._begin(files, folder.path.resolve().name)
             for key, value in _flat(_plain(experiment)).items():
                 self._client.log_param(self.id, key, str(value)[:_LONGEST_PARAMETER])
-        self.where = f"{uri}  (mlflow ui --backend-store-uri {quoted(uri)})"
+        self.where = f"{uri}  ({command('mlflow', 'ui --backend-store-uri', quoted(uri))})"
 
     def _begin(self, files: Path | None, name: str) -> str:
         """Begin a run; return its id."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..config import Config
 
 TEST_SEEDS = range(FIRST_TEST_SEED, FIRST_TEST_SEED + 10_000)
-_SEEDS = re.compile(r"seeds:(\d+)-(\d+)")
+_SEEDS = re.compile(r"seeds:(\d{1,19})-(\d{1,19})|seed:(\d{1,19})")
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,9 @@ def campaign_names(config: "Config") -> tuple[str, ...]:
 def check_boss(config: "Config", name: str) -> None:
     """Raise a ValueError if a level has the boss but the game has no enemies."""
     if load_level(name).boss and not config.enemies:
-        raise ValueError(f"level {name!r} has the boss, who can't come with enemies=False")
+        raise ValueError(
+            f"level {name!r} has the boss, who can't come with enemies=False: choose another level"
+        )
 
 
 def check_layouts(kinds: NDArray[np.uint8], boss: NDArray[np.bool_], enemies: bool) -> None:
@@ -91,12 +93,16 @@ def seed_range(levels: str | range | Sequence[str]) -> range | None:
     if isinstance(levels, str):
         if levels in ("train", "test"):
             return TRAIN_SEEDS if levels == "train" else TEST_SEEDS
-        if not levels.startswith("seeds:"):
+        if not levels.startswith(("seeds:", "seed:")):
             return None
         match = _SEEDS.fullmatch(levels)
         if match is None:
-            raise ValueError(f"levels must be like 'seeds:100-200' (both included); got {levels!r}")
-        levels = range(int(match[1]), int(match[2]) + 1)
+            raise ValueError(
+                f"a generated level is asked for as seed:7, and several as seeds:100-200 (both "
+                f"included); got {levels!r}"
+            )
+        first, last = (match[3], match[3]) if match[3] else (match[1], match[2])
+        levels = range(int(first), int(last) + 1)
     if not isinstance(levels, range):
         return None
     if not levels or levels.step != 1 or levels.start < 0 or levels.stop - 1 > MAX_SEED:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..draw.view import FULL_HEIGHT, FULL_WIDTH, make_view
 from .controls import KEYS, Key
+from .display import init_display
 from .window import SCREEN_PART, Window, import_pygame
 
 LEFT_BUTTON = 1
@@ -53,9 +54,10 @@ def screen_height() -> int:
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
+        NoDisplayError: there is no screen.
     """
     pygame = import_pygame()
-    pygame.display.init()
+    init_display(pygame)
     width, height = pygame.display.get_desktop_sizes()[0]
     fitting = min(SCREEN_PART * height, width / FULL_WIDTH * FULL_HEIGHT, MAX_HEIGHT)
     return max(1, int(fitting) // HEIGHT_STEP) * HEIGHT_STEP

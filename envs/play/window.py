@@ -9,6 +9,8 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled
 from numpy.typing import NDArray
 
+from .display import init_display
+
 # A new window takes at most this fraction of the screen's height; the rest is for its frame, menus
 # and bars.
 SCREEN_PART = 0.9
@@ -58,6 +60,7 @@ class Window:
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
         ValueError: frames_per_second is not positive.
+        NoDisplayError: by `show`: there is no screen.
     """
 
     def __init__(self, title: str, frames_per_second: float) -> None:
@@ -118,7 +121,7 @@ class Window:
     def _open(self, width: int, height: int) -> None:
         """Open the window; its size is the largest multiple of the picture that fits the screen."""
         pygame = self._pygame
-        pygame.display.init()
+        init_display(pygame)
         screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
         factor = max(1, min(screen_width // width, int(SCREEN_PART * screen_height) // height))
         size = (width * factor, height * factor)

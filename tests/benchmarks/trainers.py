@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import torch
 from arkanoid.agents.cli import split_overrides
+from arkanoid.agents.commands.arguments import Parser
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn.model import make_model
@@ -160,7 +161,7 @@ def main() -> None:
     parser.add_argument("--config", default="quick", help="packaged config or TOML file")
     parser.add_argument("--rollouts", type=int, default=6, help="rollouts per measurement")
     options, words = parser.parse_known_args()
-    _, overrides = split_overrides(words)
+    _, overrides = split_overrides(words, Parser())
     experiment = load_experiment(options.config, [*overrides, ("training.torch_threads", "1")])
     size = experiment.ppo.n_steps * experiment.training.worlds
     torch.set_num_threads(1)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...experiment.errors import SettingsError
-from ...experiment.runs import RunFolder
+from ...experiment.runs import INTERRUPTED, RunFolder
 from ...experiment.seeds import Purpose, spread_seed
 from ...experiment.settings import Experiment, load_experiment
 from ..periodic_validation import SECONDS
@@ -75,7 +75,7 @@ def run_trial(trial: "optuna.Trial", search: Search, progress: Progress) -> floa
     """
     import optuna
 
-    from ..training import INTERRUPTED, train
+    from ..training import train
     from .speed import measure_speed
 
     space = search.space

@@ -189,6 +189,19 @@ def test_a_wrong_override_is_blamed_on_the_command_line(
         assert word in str(caught.value)
 
 
+@pytest.mark.parametrize("text", ["1e6", "1000000", "1_000_000", "1E+6", "1000000.0"])
+def test_a_million_is_an_integer_however_it_is_written(tmp_path: Path, text: str) -> None:
+    """``1e6`` was refused: TOML takes it for a floating-point number."""
+    path = write(tmp_path, f"[training]\ntimesteps = {text}\n[network]\nhidden = [64.0]")
+    for experiment in (
+        load_experiment(path),
+        load_experiment("quick", [("training.timesteps", text)]),
+    ):
+        assert experiment.training.timesteps == 1_000_000
+        assert type(experiment.training.timesteps) is int
+    assert load_experiment(path).network.hidden == (64,)
+
+
 def test_a_missing_file_lists_the_packaged_configs() -> None:
     with pytest.raises(SettingsError) as caught:
         load_experiment("no_such.toml")

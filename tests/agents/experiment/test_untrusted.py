@@ -237,7 +237,7 @@ def test_the_rebuilt_network_plays_as_the_unpickled_one(
     with torch.no_grad():  # as large as after a training
         for weight in model.policy.parameters():
             weight += torch.empty_like(weight).uniform_(-0.2, 0.2)
-    save_model(model, run.model)
+    save_model(model, run.model, run.experiment())
     received = ModelFile.find(str(run.path))
     rebuilt = load_policy(received, experiment)
     unpickled = load_policy(replace(received, run=run), experiment)
@@ -270,7 +270,7 @@ def test_each_model_has_the_network_of_its_own_run(
 ) -> None:
     other = load_experiment(str(run.config), [("network.hidden", "[8]"), ("output", str(tmp_path))])
     small = RunFolder.create(other)
-    save_model(make_model(other, adapt(make_worlds(other, 64))), small.model)
+    save_model(make_model(other, adapt(make_worlds(other, 64))), small.model, other)
     assert cli.main(["evaluate", str(run.path), str(small.path), "--json", *QUICK]) == 0
     assert set(json.loads(capsys.readouterr().out)["models"]) == {"lite", "lite#2"}
 

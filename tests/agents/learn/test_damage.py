@@ -19,7 +19,7 @@ import torch
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.provenance import weights_hash
-from arkanoid.agents.experiment.runs import ModelFile, RunFolder
+from arkanoid.agents.experiment.runs import INTERRUPTED, ModelFile, RunFolder
 from arkanoid.agents.learn import training
 from arkanoid.agents.learn.callbacks import ProgressBar
 from arkanoid.agents.learn.checkpoints import read_checkpoint, write_checkpoint
@@ -28,7 +28,7 @@ from arkanoid.agents.learn.model import load_policy
 from arkanoid.agents.learn.search.space import load_space
 from arkanoid.agents.learn.search.study import open_study
 from arkanoid.agents.learn.tensors import read_tensors
-from arkanoid.agents.learn.training import INTERRUPTED, train
+from arkanoid.agents.learn.training import train
 from helpers.runs import SMALL, sentence, small
 
 

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 from arkanoid.agents.experiment.errors import SettingsError
-from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.runs import INTERRUPTED, RunFolder
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds, native
 from arkanoid.agents.learn.checkpoints import read_checkpoint, write_checkpoint
 from arkanoid.agents.learn.levels.kept import KeptLevels, Level
 from arkanoid.agents.learn.levels.sampling import LEVELS, PrioritisedLevels, advantages
 from arkanoid.agents.learn.model import make_model
-from arkanoid.agents.learn.training import INTERRUPTED, train
+from arkanoid.agents.learn.training import train
 from arkanoid.agents.measure.episodes import adapt
 from arkanoid.envs.levels import generate_level
 from helpers.runs import small

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from arkanoid.agents import cli
-from arkanoid.agents.experiment.runs import RunFolder
+from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.learn.model import read_weights
 from arkanoid.agents.learn.training import train
 from helpers.runs import SMALL, sentence, small
@@ -74,18 +74,45 @@ def test_decisions_add_up_over_generations(child: RunFolder, tmp_path: Path) -> 
     assert lineage["decisions"] == 2048 + 1024
 
 
-def test_a_lone_model_needs_a_config(
+def test_a_lone_model_of_others_needs_a_config(
     parent: RunFolder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lone = tmp_path / "lone" / "mine.zip"
     lone.parent.mkdir()
-    shutil.copy(parent.model, lone)
+    with zipfile.ZipFile(parent.model) as ours, zipfile.ZipFile(lone, "w") as theirs:
+        for name in ours.namelist():
+            if name != "config.toml":
+                theirs.writestr(name, ours.read(name))
     assert "config.toml" in sentence(["train", "--from", str(lone)], capsys)
     words = settings(tmp_path / "runs", **{"training.timesteps": "256"})
     assert cli.main(["train", "quick", "--from", str(lone), *words]) == 0
     lineage = newest(tmp_path / "runs").read_notes()["lineage"]
     assert (lineage["name"], lineage["decisions"]) == (str(lone), 2048)
     assert lineage["weights"] == parent.read_notes()["weights"]
+
+
+def test_a_model_plays_without_its_folder(
+    parent: RunFolder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lone = tmp_path / "mine.zip"
+    shutil.copy(parent.model, lone)
+    results = []
+    for name in (lone, parent.model):
+        assert cli.main(["evaluate", str(name), "--json"]) == 0
+        results.append(json.loads(capsys.readouterr().out))
+    assert results[0]["suites"] == results[1]["suites"]
+    weights = ModelFile.find(str(lone)).experiment().network
+    assert weights == parent.experiment().network
+
+
+def test_a_lone_model_imports_no_module(
+    parent: RunFolder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lone = tmp_path / "theirs.zip"
+    with zipfile.ZipFile(parent.model) as ours, zipfile.ZipFile(lone, "w") as theirs:
+        theirs.writestr("policy.pth", ours.read("policy.pth"))
+        theirs.writestr("config.toml", 'env_id = "evil:Game-v0"')
+    assert "add --trust" in sentence(["evaluate", str(lone)], capsys)
 
 
 @pytest.mark.parametrize(

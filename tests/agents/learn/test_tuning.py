@@ -86,6 +86,14 @@ def test_a_search_resumes_and_prints_the_best(
         if trial.state == optuna.trial.TrialState.COMPLETE
     )
     assert best.startswith(f"# score {value:.4f}")
+    # A config of its own trains with them.
+    config_file = tmp_path / "best.toml"
+    assert cli.main([*arguments, "--trials", "4", "--out", str(config_file)]) == 0
+    assert f"arkanoid train {config_file}" in capsys.readouterr().out
+    written = load_experiment(str(config_file))
+    assert written.ppo.learning_rate == experiment.ppo.learning_rate
+    assert written.training.timesteps == experiment.training.timesteps
+    assert written.env["landing"] == load_experiment("quick").env["landing"]
     # Each trial is a run like any other.
     assert len(list((tmp_path / "study").glob("trial*/run.json"))) == 4
 

@@ -16,6 +16,7 @@ from arkanoid.agents.measure.comparison import (
     as_json,
     as_tables,
     compare,
+    count_games,
     level_interval,
     summarise,
 )
@@ -166,10 +167,24 @@ def small() -> Experiment:
     )
 
 
+class Told:
+    """What a comparison tells about its progress."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+        self.games = 0
+
+    def name(self, what: str) -> None:
+        self.names.append(what)
+
+    def ended(self, games: int) -> None:
+        self.games += games
+
+
 def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
-    told: list[str] = []
+    told = Told()
     agent = follower(small)
-    comparison = compare(small, {"agent": [agent, NoOp(SPACE)]}, told.append)
+    comparison = compare(small, {"agent": [agent, NoOp(SPACE)]}, told)
     assert set(comparison["games"]) == {
         "agent",
         "no-op",
@@ -180,7 +195,8 @@ def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
     assert set(comparison["named"]) == {*comparison["games"], "planner"}
     assert comparison["named"]["agent"]["score"].shape == (2, 2, 13)
     assert comparison["named"]["planner"]["score"].shape == (1, 1, 13)
-    assert "named: planner" in told
+    assert "named: planner" in told.names
+    assert told.games == count_games(small, models=2)
     # The agent's first model is the ball-follower, its second one does nothing.
     for suite in comparison.values():
         for name in COLUMNS:
@@ -197,7 +213,8 @@ def test_a_comparison_has_all_policies_on_all_levels(small: Experiment) -> None:
     assert score["iqm"]["estimate"] == pytest.approx(float(trimmed))
     of_level = named["policies"]["agent"]["levels"]["ripple"]["score"]["estimate"]
     assert of_level == pytest.approx(samples[:, :, 0].mean())
-    text = as_tables(small, comparison)
+    text = as_tables(small, comparison, 80)
+    assert max(map(len, text.splitlines())) <= 80
     assert "named: 13 levels, 2 episodes of each; interquartile mean" in text
     for name in (*comparison["named"], *COLUMNS.values(), "switchback"):
         assert name in text

@@ -151,13 +151,11 @@ def test_runs_that_differ_in_their_seeds_are_one_agent(runs: list[str], tmp_path
     assert group_by_experiment(models, []) == {"agent": models}
     other = load_experiment("quick", [*SMALL, ("output", str(tmp_path)), ("network.hidden", "[8]")])
     run = RunFolder.create(other)
-    run.model.write_bytes(b"")
-    third = ModelFile.find(str(run.path))
+    third = ModelFile(run, run.model)
     assert group_by_experiment([*models, third], []) == {"quick": models, "quick#2": [third]}
     game = RunFolder.create(replace(other, env={"lives": 1}))
-    game.model.write_bytes(b"")
     with pytest.raises(SettingsError, match="another 'env_id' or 'env'"):
-        group_by_experiment([*models, ModelFile.find(str(game.path))], [])
+        group_by_experiment([*models, ModelFile(game, game.model)], [])
 
 
 def test_each_agent_has_a_name_of_its_own(tmp_path: Path) -> None:
@@ -168,8 +166,7 @@ def test_each_agent_has_a_name_of_its_own(tmp_path: Path) -> None:
         size = ("network.hidden", f"[{index}]")
         other = load_experiment("quick", [*SMALL, ("output", str(tmp_path)), size])
         run = RunFolder.create(replace(other, name=name))
-        run.model.write_bytes(b"")
-        models.append(ModelFile.find(str(run.path)))
+        models.append(ModelFile(run, run.model))
     agents = group_by_experiment(models, [])
     assert list(agents.values()) == [[model] for model in models]
     assert [name.partition("#")[0] for name in agents] == [name.partition("#")[0] for name in names]

@@ -186,9 +186,9 @@ def test_the_command_draws_into_files(capsys: pytest.CaptureFixture[str], tmp_pa
     ("arguments", "words"),
     [
         (["spirol"], "Did you mean 'spiral'"),
-        (["seed:no"], "as in seed:7; got 'seed:no'"),
-        (["seed:1", "--difficulty", "2"], "difficulty must be between 0 and 1"),
-        (["comb", "--png", "no/such/folder/x.png"], "no/such/folder/x.png: No such file"),
+        (["seed:no"], "asked for as seed:7"),
+        (["seed:1", "--difficulty", "2"], "--difficulty: must be a number, from 0 to 1"),
+        (["comb", "--png", "no/such/folder/x.png"], "no/such/folder: there is no such folder"),
         (["."], "no level '.'"),
     ],
 )

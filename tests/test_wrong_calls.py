@@ -1,0 +1,243 @@
+"""Wrong calls of the command, typed into a terminal: each gets a sentence, at once.
+
+The calls run in pseudo-terminals, two at a time, in a folder with files that are not what they seem
+to be. None may show a traceback, take long, or end with another status than 2.
+"""
+
+import os
+import shutil
+import struct
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from arkanoid.agents.experiment.runs import pretrained_run
+from helpers.processes import ARKANOID
+
+if sys.platform == "win32":
+    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
+
+import fcntl
+import pty
+import termios
+
+# Processor seconds; the clock would measure what else the machine does.
+AT_ONCE = 2.0
+# Letters of the longest sentences: those that list all levels or settings.
+LONGEST = 420
+LINUX = sys.platform.startswith("linux")
+NO_SCREEN = {"DISPLAY": "", "WAYLAND_DISPLAY": "", "SDL_VIDEODRIVER": ""}
+
+# What is typed after `arkanoid`, and words of the answer. RUN is the folder of a run.
+CALLS = {
+    # No such command, option or argument
+    "trian quick": "did you mean train?",
+    "frobnicate": "the commands are play, ",
+    "--frobnicate": "unknown option --frobnicate",
+    "levels --pgn x.png": "did you mean --png?",
+    "watch --levle spiral": "did you mean --level?",
+    "evaluate --jsn": "did you mean --json?",
+    "replay": "FILE is missing",
+    "report": "RUN is missing",
+    "film": "OUT is missing",
+    "dataset a/b-v0": "PLAYER is missing",
+    "reproduce RUN RUN": "one argument too many",
+    "levels --png": "--png",
+    "train --seed": "--seed needs a value",
+    "train quick --resume RUN": "give no others",
+    "reproduce RUN --seed 1": "its own settings",
+    "evaluate RUN RUN": "given twice",
+    "train quick --track tensorboard": "'mlflow'",
+    # Settings
+    "train --ppo.gama 0.9": "'ppo.gamma'",
+    "train --seed -1": "at least 0",
+    "train --seed 1.5": "an integer",
+    "train --training.timesteps 1e6x": "an integer",
+    "train --training.worlds 1e9": "at most 1000000",
+    "train --ppo.learning_rate fast": "a number, above 0",
+    "train --ppo.batch_size 1000": "must divide",
+    "train --evaluation.suites games": "a list of texts",
+    "evaluate RUN --evaluation.suites ['all']": "'named'",
+    "train --env.livs 3": "did you mean 'lives'?",
+    "train --env.lives 0": "lives must be between",
+    "train --env_id CartPole-v1": "CartPole-v1",
+    "train --name a/b": "'name'",
+    "train --output /dev/null/runs": "is no folder",
+    # Numbers
+    "tune quick --trials 0": "at least 1",
+    "tune quick --budget soon": "above 0",
+    "tune quick --validation.every 9": "--budget",
+    "film RUN x.gif --seconds 0": "above 0",
+    "replay mine.txt --speed 0": "from 0.001 to 1000",
+    "levels seed:1 --difficulty 2": "from 0 to 1",
+    "dataset a/b-v0 planner --games none": "at least 1",
+    # Files that are not there, or are something else
+    "train nothing.toml": "the name of a packaged one",
+    "train RUN/model.zip": "not a TOML file",
+    "train mine.txt": "not a TOML file",
+    "train --resume nothing": "the folder of a run",
+    "train --from nothing": "the folder of a run",
+    "reproduce .": "the folder of a run",
+    "tune quick --space nothing": "wide",
+    "evaluate nothing": "the folder of a run",
+    "evaluate RUN/config.toml": "no model",
+    "evaluate RUN/notes.txt": "give the folder of its run",
+    "evaluate cut": "damaged",
+    "evaluate others.zip": "config.toml",
+    "watch mine.txt": "no model",
+    "replay nothing.replay": "No such file",
+    "replay mine.txt": "no replay",
+    # Another game than the model's
+    "evaluate RUN --env.observation rgb": "leave out --env.observation",
+    "film RUN x.gif --env_id Arkanoid-v0": "'env.actions'",
+    "film RUN x.gif --level warden": "choose another level",
+    # Levels
+    "levels spirol": "Did you mean 'spiral'?",
+    "levels wrong.txt": "line 3, column 3",
+    "levels seed:x": "seed:7",
+    "levels seeds:0-999": "at most 100",
+    "film RUN x.gif --level nowhere": "seeds:0-9",
+    "train --env.levels nowhere": "no level 'nowhere'",
+    # Files that cannot be written
+    "levels --png x.jpg": "end in .png",
+    "levels --png nowhere/x.png": "no such folder",
+    "film RUN x.jpg": ".gif or .mp4",
+    "film RUN nowhere/x.gif": "no such folder",
+    "report RUN --out x.pdf": ".html or .md",
+    "evaluate RUN --plots /dev/null/x": "is no folder",
+    "replay mine.txt --export x.avi": ".png",
+    "tune quick --out nowhere/x.toml": "no such folder",
+}
+# Without a screen; elsewhere there is always one.
+BLIND = {
+    "play": "arkanoid film game.gif",
+    "play --lite --level mine.txt": "--level mine.txt",
+    "watch RUN": "arkanoid film RUN game.gif",
+    "watch": "no display",
+}
+
+
+class Answer(NamedTuple):
+    """What a terminal shows in the end, the exit status, and the processor seconds."""
+
+    text: str
+    status: int
+    seconds: float
+
+
+def typed(call: str, folder: Path, **variables: str) -> Answer:
+    """Type a call into a terminal of 80 columns, and wait for its end."""
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    environment = {**os.environ, "PYTHONIOENCODING": "utf-8", **NO_SCREEN, **variables}
+    process = subprocess.Popen(
+        [*ARKANOID, *call.split()],
+        cwd=folder,
+        env=environment,
+        stdin=theirs,
+        stdout=theirs,
+        stderr=theirs,
+    )
+    os.close(theirs)
+    shown = b""
+    try:
+        while part := os.read(ours, 4096):
+            shown += part
+    except OSError:  # so a terminal tells that nobody writes any more
+        pass
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    os.close(ours)
+    text = shown.decode("utf-8", "replace").replace("\r\n", "\n")
+    return Answer(text, process.returncode, usage.ru_utime + usage.ru_stime)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a run, and with files that are not what a call takes them for."""
+    folder = tmp_path_factory.mktemp("calls")
+    run = folder / "RUN"
+    shutil.copytree(pretrained_run(), run, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    (run / "notes.txt").write_text("Monday: trained.\n")
+    cut = folder / "cut"
+    cut.mkdir()
+    shutil.copy(run / "config.toml", cut)
+    (cut / "model.zip").write_bytes((run / "model.zip").read_bytes()[:3000])
+    shutil.copy(run / "model.zip", folder / "others.zip")
+    (folder / "mine.txt").write_text("name: Mine\n\n.rrrrrrrrr.\n")
+    (folder / "wrong.txt").write_text("name: Wrong\n\n.rkrrrrrrr.\n")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def answers(folder: Path) -> Iterator[dict[str, "Future[Answer]"]]:
+    """The answers to all calls, which are typed into two terminals."""
+    # What the first call compiles or caches is not what the others are measured for.
+    typed("levels --png x.png spiral", folder)
+    with ThreadPoolExecutor(2) as pool:
+        calls = [*CALLS, *(BLIND if LINUX else ())]
+        yield {call: pool.submit(typed, call, folder) for call in calls}
+
+
+def check(answer: Answer, words: str) -> None:
+    """Check that an answer is a sentence with these words."""
+    assert "Traceback" not in answer.text
+    assert answer.status == 2, answer.text
+    assert answer.text.startswith("arkanoid: error: ")
+    assert answer.text.count("\n") == 1, answer.text
+    assert words in answer.text
+    assert len(answer.text) < LONGEST
+    assert answer.seconds < AT_ONCE
+
+
+def test_there_are_sixty() -> None:
+    assert len(CALLS) + len(BLIND) >= 60
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_a_wrong_call_gets_a_sentence(call: str, answers: dict[str, "Future[Answer]"]) -> None:
+    check(answers[call].result(), CALLS[call])
+
+
+@pytest.mark.skipif(not LINUX, reason="there is always a display")
+@pytest.mark.parametrize("call", BLIND)
+def test_without_a_display_it_says_what_works(
+    call: str, answers: dict[str, "Future[Answer]"]
+) -> None:
+    """A window opened that nobody could see, and the game went on for ever."""
+    check(answers[call].result(), BLIND[call])
+
+
+@pytest.mark.skipif(not LINUX, reason="there is always a display")
+def test_a_display_that_does_not_answer_is_none(folder: Path) -> None:
+    """SDL then takes a driver that shows nothing."""
+    check(typed("play", folder, DISPLAY=":4711"), "no display")
+
+
+def test_a_missing_extra_is_named(folder: Path, tmp_path: Path) -> None:
+    missing = "raise ModuleNotFoundError('No module named pydantic', name='pydantic')"
+    (tmp_path / "pydantic.py").write_text(missing)
+    answer = typed("evaluate RUN", folder, PYTHONPATH=str(tmp_path))
+    assert answer.status == 1
+    assert 'install -e ".[train]"' in answer.text
+    assert answer.text.count("\n") == 1
+
+
+@pytest.mark.skipif(getattr(os, "geteuid", lambda: 0)() == 0, reason="root may write anywhere")
+def test_a_folder_that_may_not_be_written_into_is_named(folder: Path) -> None:
+    locked = folder / "locked"
+    locked.mkdir(mode=0o500)
+    for call in ("film RUN locked/x.gif", "train --output locked", "levels --png locked/x.png"):
+        check(typed(call, folder), "may not write")
+
+
+@pytest.mark.parametrize("call", ["", "--help", "levels --help"])
+def test_help_is_no_mistake(call: str, folder: Path) -> None:
+    answer = typed(call, folder)
+    assert answer.status == 0
+    assert answer.text.startswith("usage: arkanoid")
+    assert max(map(len, answer.text.splitlines())) < 80
