@@ -21,8 +21,9 @@ _EPILOG = """\
 keys:
   left, right, A, D, or the mouse   move the paddle
   space, or the left button         fire: serve, release a caught ball, shoot, start, go on
-  P   pause          N   begin a game with the next round
+  P   pause          N   begin a game with the next round (asks first)
   R   restart        F   fill the screen
+  H   what is what   M   sound on or off
   Esc quit"""
 
 
@@ -71,7 +72,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     save = _Saver(arguments.save)
     try:
         config, options = hand_config(arguments.level, arguments.difficulty, **keywords)
-        interrupted = play_by_hand(config, options, seed, save)
+        interrupted = play_by_hand(config, options, seed, save, _score_file())
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
@@ -108,6 +109,11 @@ def free_path(path: Path) -> Path:
     while free.exists():
         free = path.with_stem(f"{path.stem}-{next(copies)}")
     return free
+
+
+def _score_file() -> Path:
+    """Return the user's file of high scores, beside the folder for replays."""
+    return _replay_folder().with_name("scores.json")
 
 
 def _replay_folder() -> Path:
