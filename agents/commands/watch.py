@@ -4,41 +4,37 @@ import argparse
 
 from .arguments import add_level, add_model
 
+_EPILOG = """\
+The evaluation's games follow each other until you close the window.
+
+keys in the window: space or P pause, + faster, - slower, N next game, R from the start,
+F fill the screen, Esc quit
+"""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.usage = "%(prog)s [MODEL] [--level LEVEL] [--trust] [--key value ...]"
     add_model(parser)
     add_level(parser)
-    parser.epilog = "The evaluation's games follow each other until you close the window."
+    parser.epilog = _EPILOG
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
-    """Show games until the window is closed; return the exit status."""
+    """Show games until the window is closed; return the exit status (130 after Ctrl-C)."""
     from ..experiment.runs import ModelFile
 
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.run.experiment(overrides)
-    from ...envs.play.window import Window
+    from ...envs.play.show import run_show
     from ..measure.suites import WHOLE_GAMES, find_starts
 
     start = find_starts(experiment, arguments.level)[0] if arguments.level else WHOLE_GAMES
     from ..learn.model import load_policy
-    from ..show.frames import can_be_smooth, frame_rate, play_frames
+    from ..show.watching import WATCH_KEYS, Frame, Watching
 
-    policy = load_policy(model, experiment)
-    smooth = can_be_smooth(experiment)
-    window = Window("Arkanoid", frame_rate(experiment, smooth))
-    try:
-        episode = 0
-        while not window.closed:
-            frame = None
-            for frame in play_frames(experiment, policy, start, smooth, episode):
-                if not window.show(frame.picture):
-                    break
-            if frame is not None:
-                print(f"game {episode + 1}: score {frame.score}, round {frame.round}")
-            episode += 1
-    finally:
-        window.close()
-    return 0
+    def report(game: int, frame: Frame) -> None:
+        print(f"game {game}: score {frame.score}, round {frame.round}")
+
+    show = Watching(experiment, load_policy(model, experiment), start, report)
+    return 130 if run_show(show, f"Arkanoid - {WATCH_KEYS}") else 0
