@@ -1,5 +1,8 @@
 """The pictures of the game's things, the help card and the icon."""
 
+import runpy
+
+import imageio.v3 as iio
 import numpy as np
 import pytest
 from arkanoid.envs.config import Config
@@ -15,6 +18,7 @@ from arkanoid.envs.play.things import (
     draw_things,
 )
 from arkanoid.envs.play.window import Window
+from helpers.repository import DOCS
 from helpers.sittings import FAST
 
 THINGS = (*CAPSULE_THINGS, *BRICK_THINGS, *ENEMY_THINGS, BOSS_THING, SHARD_THING)
@@ -71,3 +75,17 @@ def test_windows_have_the_icon(monkeypatch: pytest.MonkeyPatch) -> None:
     window.show(np.zeros((60, 40, 3), np.uint8))
     window.close()
     np.testing.assert_array_equal(icons[0], icon)
+
+
+def test_the_page_of_things_shows_what_the_game_draws() -> None:
+    """If not: ``python docs/pictures/things.py``."""
+    script = runpy.run_path(str(DOCS / "pictures" / "things.py"))
+    page = (DOCS / "things.md").read_text(encoding="utf-8")
+    things = script["THINGS"]
+    pictures, _ = draw_things(tuple(things.values()), script["SCALE"])
+    for (name, thing), picture in zip(things.items(), pictures, strict=True):
+        np.testing.assert_array_equal(iio.imread(DOCS / "pictures/things" / f"{name}.png"), picture)
+        assert f"(pictures/things/{name}.png)" in page
+        word = thing.name.replace(" ", ", ")
+        assert f"| {word} |" in page or f"![{word}]" in page
+    np.testing.assert_array_equal(iio.imread(DOCS / "pictures/icon.png"), draw_icon())
