@@ -31,7 +31,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
     start = find_starts(experiment, arguments.level)[0] if arguments.level else WHOLE_GAMES
     from ..learn.model import load_policy
-    from ..show.watching import WATCH_KEYS, Frame, Watching
+    from ..show.frames import Frame
+    from ..show.watching import WATCH_KEYS, Watching
 
     def report(game: int, frame: Frame) -> None:
         print(f"game {game}: score {frame.score}, round {frame.round}")
