@@ -96,7 +96,8 @@ _COLOUR_NAMES = ("white", "orange", "cyan", "green", "red", "blue", "magenta", "
 
 CAPSULE_THINGS = tuple(
     Thing(f"{CAPSULE_LETTERS[kind]} {name}", meaning, partial(_put_capsule, kind), 1.0, 0.6)
-    for kind, (name, meaning) in zip(range(1, CAPSULES + 1), _POWERS, strict=True)
+    # A capsule that somebody adds is left out until it is described above.
+    for kind, (name, meaning) in zip(range(1, CAPSULES + 1), _POWERS, strict=False)
 )
 BRICK_THINGS = tuple(
     Thing(name, meaning, partial(_put_brick, kind), 1.0, 0.5)
