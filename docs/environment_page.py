@@ -176,6 +176,8 @@ def page() -> str:
 
 # The environments
 
+![A game of Arkanoid-v0](pictures/game.gif)
+
 {meanings("id", ids())}
 
 ```python
@@ -198,9 +200,9 @@ The player moves a paddle at the bottom of a field of
 ball breaks bricks. The place on the paddle where the ball lands decides its angle. Some bricks hide
 capsules. A capsule lets the paddle catch balls, grow or shoot, slows the ball down, splits it into
 three, opens a gate to the next round, or gives a life. Enemies come through the ceiling and get in
-the ball's way. Twelve rounds lead to a boss; after it, generated rounds get harder and harder
-without end (see [levels](levels.md)). The rules follow the arcade game of 1986; the levels and
-pictures are our own.
+the ball's way ([pictures of all](things.md)). Twelve rounds lead to a boss; after it,
+generated rounds get harder and harder without end (see [levels](levels.md)). The rules follow the
+arcade game of 1986; the levels and pictures are our own.
 
 A tick is 1/{rules.TICKS_PER_SECOND} s. Things touch at their exact time (see
 [the engine](engine.md)): a ball of any speed passes through nothing. The same seed and actions give

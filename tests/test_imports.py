@@ -26,6 +26,7 @@ MAY_IMPORT = {
 ORDER = {
     "physics": """
         world
+        drawing
         operations
         body protocols
         pairs

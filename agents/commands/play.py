@@ -23,8 +23,9 @@ _EPILOG = """\
 keys:
   left, right, A, D, mouse   move the paddle
   space, left button         fire: serve, release a ball, shoot, start, go on
-  P   pause          N   begin a game with the next round
+  P   pause          N   begin a game with the next round (asks first)
   R   restart        F   fill the screen
+  H   what is what   M   sound on or off
   Esc quit"""
 
 
@@ -81,7 +82,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     save = _Saver(arguments.save)
     try:
         config, options = hand_config(level, arguments.difficulty, **keywords)
-        interrupted = play_by_hand(config, options, seed, save)
+        interrupted = play_by_hand(config, options, seed, save, _score_file())
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
@@ -118,6 +119,11 @@ def free_path(path: Path) -> Path:
     while free.exists():
         free = path.with_stem(f"{path.stem}-{next(copies)}")
     return free
+
+
+def _score_file() -> Path:
+    """Return the user's file of high scores, beside the folder for replays."""
+    return _replay_folder().with_name("scores.json")
 
 
 def _replay_folder() -> Path:

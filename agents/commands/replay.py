@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 _FASTEST = 1000.0  # and as much slower
 
 _EPILOG = """\
-keys in the window: space or P pause, R from the start, F fill the screen, Esc quit
+keys in the window: space or P pause, + faster, - slower, R from the start, F fill the screen,
+Esc quit
 
   arkanoid replay game.replay --export game.gif --from 10 --to 25 --height 256
   arkanoid replay game.replay --export last.png        the last picture

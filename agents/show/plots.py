@@ -68,6 +68,7 @@ def plot_policies(title: str, results: Mapping[str, Results]) -> Figure:
         axes.invert_yaxis()
         axes.set_xlabel(COLUMNS[measure])
         axes.set_xlim(left=0)
+        axes.locator_params(axis="x", nbins=4)  # labels of more ticks would touch each other
         if measure != _BARS[0]:
             axes.set_yticks([])
     figure.suptitle(title)

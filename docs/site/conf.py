@@ -63,6 +63,7 @@ napoleon_numpy_docstring = False
 html_theme = "furo"
 html_title = f"Arkanoid {version}"
 html_math_renderer = "mathml"
+html_favicon = "../pictures/icon.png"
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
 html_copy_source = False

@@ -16,6 +16,7 @@ TEXT_HEIGHT = 0.3
 LINE_SPACE = 0.22  # between lines
 BAND_SPACE = 0.35  # between the text and the edges of the dark band
 WIDEST = 10.8  # longer lines are drawn smaller
+MARGIN = 0.3  # right of a line that begins elsewhere than in the middle
 DIMMING = 4  # the band's pixels are divided by this
 
 
@@ -41,15 +42,33 @@ def draw_overlay(
         upper, lower = (top - BAND_SPACE) * scale, (top + needed + BAND_SPACE) * scale
         picture[max(0, round(upper)) : round(lower)] //= DIMMING
     for text, height, colour in texts:
-        _draw_line(picture, text, top, height, colour, scale)
+        write_line(picture, text, top, height, colour)
         top += height + LINE_SPACE
 
 
-def _draw_line(
-    picture: NDArray[np.uint8], text: str, top: float, height: float, colour: int, scale: float
+def write_line(
+    picture: NDArray[np.uint8],
+    text: str,
+    top: float,
+    height: float,
+    colour: int,
+    left: float | None = None,
 ) -> None:
-    """Draw a centred line; top and height in brick widths."""
+    """Draw a line of text; one that is too long for the picture is drawn smaller.
+
+    Args:
+        picture: uint8 [height, width, 3].
+        text: characters that the font lacks become question marks.
+        top, height: of its letters, in brick widths, from the picture's upper edge.
+        colour: a row of the palette.
+        left: where it begins, in brick widths from the left edge; None: it is centred.
+    """
+    scale = min(picture.shape[0] / FULL_HEIGHT, picture.shape[1] / FULL_WIDTH)
     codes = encode("".join(letter if letter in GLYPHS else "?" for letter in text.upper()))
-    height = min(height, WIDEST / max(1.0, len(codes) * text_step(1.0)))
-    left = picture.shape[1] / 2 - len(codes) * text_step(height) * scale / 2
-    draw_text(picture, codes, left, top * scale, height * scale, PALETTE[colour])
+    room = WIDEST if left is None else FULL_WIDTH - MARGIN - left
+    height = min(height, room / max(1.0, len(codes) * text_step(1.0)))
+    if left is None:
+        begin = picture.shape[1] / 2 - len(codes) * text_step(height) * scale / 2
+    else:
+        begin = left * scale
+    draw_text(picture, codes, begin, top * scale, height * scale, PALETTE[colour])

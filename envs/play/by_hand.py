@@ -1,6 +1,7 @@
 """Playing by hand in a window, and watching recorded games."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,13 +10,15 @@ from ..batch.batch import Batch
 from ..batch.replays import Replay
 from ..config import Config
 from ..levels import CAMPAIGN
-from ..rules import TICKS_PER_SECOND
 from .gallery import DIFFICULTY, parse_seed
+from .scores import Scores, game_name
 from .show import run_show, screen_height
-from .sitting import Sitting
-from .viewer import Viewer
+from .sitting import Board, Sitting
+from .sound import Speaker
+from .viewer import REPLAY_KEYS, Viewer
 
 TITLE = "Arkanoid"
+REPLAY_TITLE = f"{TITLE} replay - {REPLAY_KEYS}"
 # A human player decides in each tick, and no number of decisions ends the game.
 BY_HAND: dict[str, Any] = {"actions": "box", "frame_skip": 1, "max_decisions": 10**9}
 
@@ -53,6 +56,7 @@ def play_by_hand(
     options: dict[str, Any],
     seed: int,
     keep: Callable[[Replay], None],
+    scores: Path | None = None,
 ) -> bool:
     """Open a window and let someone play until it is closed; return whether Ctrl-C ended it.
 
@@ -62,17 +66,20 @@ def play_by_hand(
         seed: the seed of their random numbers.
         keep: is called with each game that was begun, when the game is over or the player leaves
             it; also after Ctrl-C.
+        scores: the file of high scores; None: they are forgotten.
 
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
         ValueError: there is no such level, or a value is illegal.
     """
-    sitting = Sitting(config, options, seed, keep, screen_height())
+    usual = Config.from_keywords(BY_HAND)
+    board = Board(Scores(scores), lambda begun: game_name(config, usual, begun))
+    sitting = Sitting(config, options, seed, keep, screen_height(), board, Speaker())
     # All kernels are compiled now, and not while somebody plays.
     _rehearse(config, options)
     sitting.picture()
     try:
-        return run_show(sitting, TITLE, TICKS_PER_SECOND)
+        return run_show(sitting, TITLE)
     finally:
         sitting.close()
 
@@ -89,7 +96,7 @@ def view_replay(replay: Replay, speed: float = 1.0) -> bool:
         ReplayDivergedError: the game differs from the recording.
     """
     viewer = Viewer(replay, speed, screen_height())
-    return run_show(viewer, TITLE, viewer.frames_per_second)
+    return run_show(viewer, REPLAY_TITLE)
 
 
 def _rehearse(config: Config, options: dict[str, Any]) -> None:

@@ -20,12 +20,18 @@ class Key(Enum):
     RESTART = auto()
     NEXT = auto()
     FULL_SCREEN = auto()
+    FASTER = auto()
+    SLOWER = auto()
+    HELP = auto()
+    SOUND = auto()
     QUIT = auto()
 
 
 # SDL's key codes, which pygame uses: letters have the codes of their characters, arrows their own.
 RIGHT_ARROW = 0x4000004F
 LEFT_ARROW = 0x40000050
+DOWN_ARROW = 0x40000051
+UP_ARROW = 0x40000052
 ESCAPE = 27
 KEYS = {
     LEFT_ARROW: Key.LEFT,
@@ -37,6 +43,14 @@ KEYS = {
     ord("r"): Key.RESTART,
     ord("n"): Key.NEXT,
     ord("f"): Key.FULL_SCREEN,
+    # Plus is typed with shift on some keyboards, where its key is that of the equals sign.
+    ord("+"): Key.FASTER,
+    ord("="): Key.FASTER,
+    UP_ARROW: Key.FASTER,
+    ord("-"): Key.SLOWER,
+    DOWN_ARROW: Key.SLOWER,
+    ord("h"): Key.HELP,
+    ord("m"): Key.SOUND,
     ESCAPE: Key.QUIT,
 }
 

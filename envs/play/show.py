@@ -29,6 +29,11 @@ class Show(Protocol):
 
     ended: bool
 
+    @property
+    def frames_per_second(self) -> float:
+        """The most pictures per second."""
+        ...
+
     def press(self, key: Key) -> None:
         """React to a key that is pressed."""
 
@@ -63,7 +68,7 @@ def screen_height() -> int:
     return max(1, int(fitting) // HEIGHT_STEP) * HEIGHT_STEP
 
 
-def run_show(show: Show, title: str, frames_per_second: float) -> bool:
+def run_show(show: Show, title: str) -> bool:
     """Run a show until it ends or its window is closed; return whether a signal ended it.
 
     Ctrl-C (SIGINT) and SIGTERM end it between two pictures, so that nothing is lost.
@@ -71,7 +76,7 @@ def run_show(show: Show, title: str, frames_per_second: float) -> bool:
     Raises:
         DependencyNotInstalled: pygame-ce is missing.
     """
-    window = Window(title, frames_per_second)
+    window = Window(title, show.frames_per_second)
     with _catch_signals() as interrupted:
         try:
             while not show.ended and not interrupted.is_set():
@@ -81,6 +86,7 @@ def run_show(show: Show, title: str, frames_per_second: float) -> bool:
                 for event in window.events:
                     _react(show, window, picture, event)
                 show.tick()
+                window.set_rate(show.frames_per_second)
         finally:
             window.close()
     return interrupted.is_set()

@@ -1,6 +1,5 @@
 """Shows a recorded game, with pauses. This needs no window."""
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,9 +11,9 @@ from ..batch.replays import Replay
 from ..draw.overlay import draw_overlay
 from ..draw.picture import draw_world
 from .controls import Key
+from .pace import Pace
 
-# The most pictures per second; a faster show leaves some out.
-MOST_PICTURES = 60
+REPLAY_KEYS = "space: pause, + faster, - slower, R: from the start, F: full screen, Esc: quit"
 
 
 class Viewer:
@@ -26,7 +25,6 @@ class Viewer:
         height: the height of the pictures, in pixels.
 
     Attributes:
-        frames_per_second: how many pictures per second give this speed.
         paused: whether the game is paused.
         ended: whether the user has asked to quit.
 
@@ -35,9 +33,7 @@ class Viewer:
     """
 
     def __init__(self, replay: Replay, speed: float, height: int) -> None:
-        rate = replay.frames_per_second * speed
-        self._stride = max(1, math.ceil(rate / MOST_PICTURES))
-        self.frames_per_second = rate / self._stride
+        self._pace = Pace(replay.frames_per_second, speed)
         self.paused = False
         self.ended = False
         self._over = False
@@ -47,8 +43,15 @@ class Viewer:
         self._batch: Batch
         self._begin()
 
+    @property
+    def frames_per_second(self) -> float:
+        """How many pictures per second give the present speed."""
+        return self._pace.frames_per_second
+
     def press(self, key: Key) -> None:
-        """React to a key that is pressed: pause or continue, begin again, quit."""
+        """React to a key that is pressed: pause or continue, another speed, begin again, quit."""
+        if self._pace.press(key):
+            return
         if key is Key.QUIT:
             self.ended = True
         elif key is Key.RESTART:
@@ -70,7 +73,7 @@ class Viewer:
 
     def tick(self) -> None:
         """Go on by one picture, unless the game is paused."""
-        for _ in range(0 if self.paused or self._over else self._stride):
+        for _ in range(0 if self.paused or self._over else self._pace.stride):
             state = next(self._states, None)
             if state is None:
                 self._over = True
@@ -90,8 +93,10 @@ class Viewer:
             score = f"SCORE {result.score}   ROUND {result.round}"
             return "THE END", (score, "", "SPACE: AGAIN   ESC: QUIT")
         if self.paused:
-            return "PAUSED", ("SPACE: GO ON   R: FROM THE START", "F: FULL SCREEN   ESC: QUIT")
-        return "", ()
+            keys = "SPACE: GO ON   R: FROM THE START"
+            return "PAUSED", (keys, "+ -: SPEED   F: FULL SCREEN   ESC: QUIT")
+        speed = self._pace.text()
+        return "", (speed,) if speed else ()
 
     def _begin(self) -> None:
         self._states = replay_states(self._replay)

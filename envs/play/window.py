@@ -64,11 +64,9 @@ class Window:
     """
 
     def __init__(self, title: str, frames_per_second: float) -> None:
-        if not frames_per_second > 0:
-            raise ValueError(f"frames_per_second must be positive; got {frames_per_second!r}")
         self._pygame = import_pygame()
         self._title = title
-        self._period = 1.0 / frames_per_second
+        self.set_rate(frames_per_second)
         self._next = 0.0
         self._window: Any = None
         self._closed = False
@@ -98,6 +96,16 @@ class Window:
             self.close()
         return not self._closed
 
+    def set_rate(self, frames_per_second: float) -> None:
+        """Change the most pictures per second.
+
+        Raises:
+            ValueError: it is not positive.
+        """
+        if not frames_per_second > 0:
+            raise ValueError(f"frames_per_second must be positive; got {frames_per_second!r}")
+        self._period = 1.0 / frames_per_second
+
     def toggle_full_screen(self) -> None:
         """Fill the screen, or become a window again."""
         self._full_screen = not self._full_screen
@@ -126,6 +134,10 @@ class Window:
         factor = max(1, min(screen_width // width, int(SCREEN_PART * screen_height) // height))
         size = (width * factor, height * factor)
         self._window = pygame.Window(self._title, size, resizable=True)
+        # Imported on demand: it draws, and the window may be another program's.
+        from .things import draw_icon
+
+        self._window.set_icon(_as_surface(pygame, draw_icon()))
 
     def _wait(self) -> None:
         """Wait until the next picture is due."""
@@ -145,7 +157,7 @@ class Window:
         left = (surface.get_width() - size[0]) // 2
         top = (surface.get_height() - size[1]) // 2
         self._picture_place = (left, top, factor)
-        picture = pygame.image.frombuffer(np.ascontiguousarray(frame), (width, height), "RGB")
+        picture = _as_surface(pygame, frame)
         if size != (width, height):
             whole = factor == int(factor)
             scale = pygame.transform.scale if whole else pygame.transform.smoothscale
@@ -167,3 +179,9 @@ class Window:
         # Take all others, too, for the queue must not become full.
         self.events = pygame.event.get(exclude=closing)
         return asked
+
+
+def _as_surface(pygame: Any, picture: NDArray[np.uint8]) -> Any:
+    """Return a picture, uint8 [height, width, 3], as pygame has them."""
+    height, width = picture.shape[:2]
+    return pygame.image.frombuffer(np.ascontiguousarray(picture), (width, height), "RGB")

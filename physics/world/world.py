@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..arguments import finite, integer, inverse_mass, not_negative, vector, whole
 from ..body import Body, FloatArray
+from ..drawing import draw_scene
 from ..errors import HitLimitWarning
 from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
@@ -282,6 +283,32 @@ class World:
         if self._built is None:
             self._built = Built(self._scene)
         return self._built
+
+    def __repr__(self) -> str:
+        dynamic = sum(spec.mass is not None for spec in self._scene.specs)
+        sensors = sum(spec.is_sensor for spec in self._scene.specs)
+        kinds = f"{dynamic} dynamic, {sensors} sensors"
+        return f"<World of {len(self)} bodies ({kinds}) at time {self.time:g}>"
+
+    def draw(self, hits: Iterable[Any] = (), paths: Any = (), width: int = 480) -> str:
+        """Return a picture of the bodies as SVG; static ones are grey, sensors are dashed.
+
+        Args:
+            hits: `Hit` records; each one's point and normal are drawn.
+            paths: positions of all bodies at several times, [times, n, 2], for example a list of
+                `positions`; the ways between them are drawn.
+            width: of the picture, in pixels.
+        """
+        looks = [
+            "sensor" if spec.is_sensor else "static" if spec.mass is None else "dynamic"
+            for spec in self._scene.specs
+        ]
+        colliders = [spec.collider for spec in self._scene.specs]
+        return draw_scene(colliders, self.positions, looks, hits, paths, width)
+
+    def _repr_svg_(self) -> str:
+        """Return the picture that notebooks show."""
+        return self.draw()
 
     def __getstate__(self) -> dict[str, Any]:
         """Support pickling and copying: what the world was built from, and a snapshot."""

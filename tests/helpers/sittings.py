@@ -1,12 +1,14 @@
 """A player in a sitting: what the tests of playing by hand share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from arkanoid.envs.batch.replays import Replay
 from arkanoid.envs.play.by_hand import hand_config
 from arkanoid.envs.play.controls import Key
-from arkanoid.envs.play.sitting import Phase, Sitting
+from arkanoid.envs.play.scores import Scores
+from arkanoid.envs.play.sitting import Board, Phase, Sitting
+from arkanoid.envs.play.sound import Speaker, Tone
 from arkanoid.envs.rules import FIELD_WIDTH
 
 # No waiting between pictures.
@@ -18,9 +20,24 @@ HEIGHT = 64
 def sit_down(
     level: str | None = None, kept: list[Replay] | None = None, **keywords: Any
 ) -> Sitting:
-    """A sitting whose games are kept in a list."""
+    """A sitting whose games are kept in a list, with high scores that nobody keeps."""
     config, options = hand_config(level, **keywords)
-    return Sitting(config, options, 5, [].append if kept is None else kept.append, HEIGHT)
+    keep = [].append if kept is None else kept.append
+    return Sitting(config, options, 5, keep, HEIGHT, Board(Scores(None), str), Listener())
+
+
+class Listener(Speaker):
+    """A speaker that notes what it would play."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard: list[Tone] = []
+
+    def switch(self) -> str:
+        return "SOUND ON"
+
+    def play(self, tones: Iterable[Tone]) -> None:
+        self.heard += tones
 
 
 def tap(shown: Any, key: Key) -> None:

@@ -126,7 +126,7 @@ def test_a_film_that_cannot_be_made_is_a_mistake(
 def test_watch_shows_games_until_the_window_is_closed(
     runs: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from arkanoid.envs.play import window
+    from arkanoid.envs.play import show, window
 
     shown: list[np.ndarray] = []
 
@@ -138,7 +138,7 @@ def test_watch_shows_games_until_the_window_is_closed(
             return super().show(frame) if len(shown) < 3 else not self.closed
 
     monkeypatch.setitem(os.environ, "SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setattr(window, "Window", Show)
+    monkeypatch.setattr(show, "Window", Show)
     assert cli.main(["watch", runs[0]]) == 0
     out = capsys.readouterr().out
     assert re.search(r"^game 1: score \d+, round 1$", out, re.MULTILINE)

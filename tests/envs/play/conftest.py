@@ -1,20 +1,26 @@
 """A display that needs no screen, and a recorded game."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from arkanoid.envs.batch.replays import Replay
 from arkanoid.envs.play import by_hand
 from arkanoid.envs.play.controls import Key
+from arkanoid.envs.play.sitting import Sitting
 from helpers.sittings import FAST, HEIGHT, lose, play_on, sit_down, tap
 
 
 @pytest.fixture(autouse=True)
-def dummy_display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Windows open on SDL's dummy display."""
+def dummy_display(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """Windows open on SDL's dummy display, and high scores go into a folder of the test's own."""
+    import platformdirs
     import pygame
 
+    monkeypatch.setattr(platformdirs, "user_data_dir", lambda *_: str(tmp_path))
+
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
     yield
     pygame.display.quit()
 
@@ -34,5 +40,5 @@ def game() -> Replay:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Games run without waiting, in small pictures."""
-    monkeypatch.setattr(by_hand, "TICKS_PER_SECOND", FAST)
+    monkeypatch.setattr(Sitting, "frames_per_second", FAST)
     monkeypatch.setattr(by_hand, "screen_height", lambda: HEIGHT)

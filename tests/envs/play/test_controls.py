@@ -23,6 +23,13 @@ def test_key_codes_are_those_of_pygame() -> None:
         "r": Key.RESTART,
         "n": Key.NEXT,
         "f": Key.FULL_SCREEN,
+        "PLUS": Key.FASTER,
+        "EQUALS": Key.FASTER,
+        "UP": Key.FASTER,
+        "MINUS": Key.SLOWER,
+        "DOWN": Key.SLOWER,
+        "h": Key.HELP,
+        "m": Key.SOUND,
         "ESCAPE": Key.QUIT,
     }
     assert {getattr(pygame, f"K_{name}"): key for name, key in names.items()} == KEYS

@@ -15,6 +15,8 @@ from helpers.sittings import FAST, post
 class Stage:
     """A show that notes what it is told, and does one deed per tick."""
 
+    frames_per_second = FAST
+
     def __init__(self, *deeds: Callable[[], object]) -> None:
         self.ended = False
         self.told: list[Any] = []
@@ -56,7 +58,7 @@ def test_events_become_keys_and_loss_of_focus() -> None:
         post("KEYDOWN", key=pygame.K_ESCAPE),
         lambda: None,
     )
-    assert not run_show(stage, "test", FAST)
+    assert not run_show(stage, "test")
     assert stage.told == [
         ("press", Key.LEFT),
         ("release", Key.LEFT),
@@ -88,7 +90,7 @@ def test_the_mouse_points_at_the_field_in_a_window_of_any_size(
         *(post("MOUSEMOTION", pos=(place, 10)) for place in places),
         lambda: None,
     )
-    run_show(stage, "test", FAST)
+    run_show(stage, "test")
     found = [x for told, x in stage.told if told == "point"]
     assert found == pytest.approx([0.0, 5.5, 11.0], abs=1.5 / factor / 32)
 
@@ -99,7 +101,7 @@ def test_f_fills_the_screen_and_is_not_passed_on(monkeypatch: pytest.MonkeyPatch
     toggled: list[bool] = []
     monkeypatch.setattr(show.Window, "toggle_full_screen", lambda self: toggled.append(True))
     stage = Stage(post("KEYDOWN", key=pygame.K_f), post("KEYUP", key=pygame.K_f), lambda: None)
-    run_show(stage, "test", FAST)
+    run_show(stage, "test")
     assert toggled == [True]
     assert ("press", Key.FULL_SCREEN) not in stage.told
 
@@ -116,7 +118,7 @@ def test_a_window_fills_the_screen_and_becomes_a_window_again() -> None:
 
 def test_closing_the_window_ends_the_show() -> None:
     stage = Stage(post("QUIT"), lambda: pytest.fail("the show goes on"))
-    assert not run_show(stage, "test", FAST)
+    assert not run_show(stage, "test")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -125,7 +127,7 @@ def test_signals_end_the_show_between_two_pictures(number: signal.Signals) -> No
     stage = Stage(
         lambda: signal.raise_signal(number), lambda: None, lambda: None, lambda: None, lambda: None
     )
-    assert run_show(stage, "test", FAST)
+    assert run_show(stage, "test")
     assert signal.getsignal(number) is before
 
 
@@ -136,7 +138,7 @@ def test_after_an_exception_the_window_is_closed_and_signals_are_as_before() -> 
         raise RuntimeError("the show is broken")
 
     with pytest.raises(RuntimeError, match="broken"):
-        run_show(Stage(fail), "test", FAST)
+        run_show(Stage(fail), "test")
     assert signal.getsignal(signal.SIGINT) is before
 
 

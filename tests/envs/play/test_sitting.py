@@ -10,6 +10,7 @@ from arkanoid.envs.batch.replays import Replay
 from arkanoid.envs.play.controls import Key
 from arkanoid.envs.play.gallery import load_or_generate
 from arkanoid.envs.play.sitting import OVER_TICKS, TITLE_TICKS, WARNING_TICKS, Phase, Sitting
+from arkanoid.envs.play.sound import Tone
 from arkanoid.envs.rules import IDLE_TICKS
 from helpers.sittings import HEIGHT, lose, play_on, sit_down, tap
 
@@ -105,6 +106,7 @@ def test_a_game_that_is_left_is_kept(key: Key | None) -> None:
         sitting.close()
     else:
         tap(sitting, key)
+        tap(sitting, key)
         assert sitting.phase is Phase.READY
         assert sitting.world.round_number == (12 if key is Key.NEXT else 11)
     (replay,) = kept
@@ -128,6 +130,7 @@ def test_every_game_of_a_sitting_plays_again() -> None:
     for key in (Key.RESTART, Key.NEXT, Key.RESTART):
         tap(sitting, Key.FIRE)
         play_on(sitting, 150)
+        tap(sitting, key)
         tap(sitting, key)
     tap(sitting, Key.FIRE)
     play_on(sitting, 50)
@@ -201,3 +204,80 @@ def test_a_level_of_ones_own_may_have_any_name(tmp_path: Path) -> None:
         sit_down("spirol")
     with pytest.raises(ValueError, match="'warden' has the boss"):
         sit_down("warden", enemies=False)
+
+
+@pytest.mark.parametrize("key", [Key.RESTART, Key.NEXT])
+@pytest.mark.parametrize("no", [Key.FIRE, Key.PAUSE])
+def test_a_key_that_drops_the_game_asks_first(key: Key, no: Key) -> None:
+    """R and N are near other keys, and dropped a game without a question."""
+    sitting = sit_down()
+    tap(sitting, Key.FIRE)
+    play_on(sitting, 50)
+    before = sitting.world.tobytes()
+    tap(sitting, key)
+    assert sitting.phase is Phase.ASKED
+    assert sitting.text()[0].endswith("?")
+    sitting.tick()
+    assert sitting.world.tobytes() == before
+    tap(sitting, no)
+    assert sitting.phase is Phase.PLAYING
+    # The other key asks its own question: two different keys are no answer.
+    tap(sitting, key)
+    tap(sitting, Key.NEXT if key is Key.RESTART else Key.RESTART)
+    assert (sitting.phase, sitting.world.tobytes()) == (Phase.ASKED, before)
+
+
+def test_the_help_card_covers_a_game_that_waits() -> None:
+    sitting = sit_down()
+    tap(sitting, Key.FIRE)
+    play_on(sitting, 50)
+    before, picture = sitting.world.tobytes(), sitting.picture()
+    tap(sitting, Key.HELP)
+    card = sitting.picture()
+    assert (card != picture).any()
+    sitting.tick()
+    assert (sitting.phase, sitting.world.tobytes()) == (Phase.PAUSED, before)
+    # A key that puts the card away does nothing else.
+    for key in (Key.HELP, Key.FIRE, Key.RESTART):
+        tap(sitting, key)
+        assert sitting.phase is Phase.PAUSED
+        assert (sitting.picture() != card).any()
+        tap(sitting, Key.HELP)
+        np.testing.assert_array_equal(sitting.picture(), card)
+
+
+def test_high_scores_are_of_games_that_can_be_compared() -> None:
+    sitting = sit_down("comb", lives=1)
+    assert not any("HIGH SCORE" in line for line in sitting.text()[1])
+    results = []
+    for _ in range(2):
+        tap(sitting, Key.FIRE)
+        play_on(sitting, 400)
+        lose(sitting)
+        results.append(int(sitting.world.score))
+        for _ in range(OVER_TICKS):
+            sitting.tick()
+        places = [line for line in sitting.text()[1] if " 1. " in line]
+        assert len(places) == 1
+        assert str(max(results)) in places[0]
+        tap(sitting, Key.FIRE)
+        assert f"HIGH SCORE {max(results)}" in sitting.text()[1]
+    # A game that begins with another round has scores of its own.
+    tap(sitting, Key.NEXT)
+    assert not any("HIGH SCORE" in line for line in sitting.text()[1])
+
+
+def test_what_happens_is_heard() -> None:
+    sitting = sit_down(lives=1)
+    tap(sitting, Key.FIRE)
+    play_on(sitting, 600)
+    heard = sitting._speaker.heard
+    assert {Tone.PADDLE, Tone.BRICK, Tone.WALL} <= set(heard)
+    broken = 106 - int(sitting.world.bricks_left)
+    assert 0 < heard.count(Tone.BRICK) <= broken
+    assert Tone.LIFE_LOST not in heard
+    lose(sitting)
+    assert heard.count(Tone.LIFE_LOST) == 1
+    tap(sitting, Key.SOUND)
+    assert sitting.text()[0] == "GAME OVER"
+    assert sitting.text()[1][0] == "SOUND ON"

@@ -54,3 +54,20 @@ def test_the_speed_is_the_one_asked_for(game: Replay, speed: float) -> None:
         ticks += 1
     seconds = ticks / viewer.frames_per_second
     assert seconds == pytest.approx(game.result.decisions / 60 / speed, rel=0.05)
+
+
+def test_two_keys_change_the_speed(game: Replay) -> None:
+    """Without them, a replay had to be started again for another speed."""
+    viewer = Viewer(game, 1.0, HEIGHT)
+    for key, speed in ((Key.FASTER, 2.0), (Key.FASTER, 4.0), (Key.SLOWER, 2.0), (Key.SLOWER, 1.0)):
+        tap(viewer, key)
+        assert viewer.text() == ("", (f"SPEED {speed:g}",))
+        # Decisions per picture times pictures per second.
+        assert viewer._pace.stride * viewer.frames_per_second == pytest.approx(60.0 * speed)
+        assert viewer.frames_per_second <= 60.0
+    for _ in range(60):
+        viewer.text()
+    assert viewer.text() == ("", ())
+    for _ in range(40):
+        tap(viewer, Key.SLOWER)
+    assert viewer.frames_per_second == pytest.approx(60.0 / 1000.0)
