@@ -10,7 +10,6 @@ has one test for each part, which says what is missing and where it is used:
 ``Dispatcher.get_call_template``    to compile once for constants and variables
 ``types.unliteral``                 the same
 ``Dispatcher.compile``              to hold back signals while it loads or compiles
-``CPUDispatcher``                   to refuse a call from Python that would crash
 ``Dispatcher._cache``               to put our cache in place of Numba's
 ``FunctionCache``                   our cache is a subclass
 ``FunctionCache._impl``             to name the files of machine code
@@ -33,7 +32,6 @@ from numba.core import event as events
 from numba.core import types
 from numba.core.caching import FunctionCache
 from numba.core.extending import intrinsic
-from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 from numba.np.arrayobj import make_array, populate_array
 
@@ -99,19 +97,6 @@ def hold_signals(dispatcher: Any) -> None:
             return plain(signature)
 
     dispatcher.compile = compile_whole
-
-
-class InnerDispatcher(CPUDispatcher):  # type: ignore[misc]
-    """A kernel that Python cannot call."""
-
-    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
-        """Refuse; without this, the process would crash."""
-        raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
-
-
-def refuse_python(dispatcher: Any) -> None:
-    """Let a kernel that was compiled `WITHOUT_PYTHON_ENTRY` refuse a call from Python."""
-    dispatcher.__class__ = InnerDispatcher
 
 
 def cache_in(folder: Path, dispatcher: Any) -> None:
