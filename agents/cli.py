@@ -20,7 +20,7 @@ from .experiment.files import cause, printable
 from .interrupts import INTERRUPTED, noted_interrupts
 from .output import OutputError, checked_output, harmless_notes
 
-# Each subcommand, which is its module's name, and what it does.
+# Each subcommand, which is its module's name (with _ for -), and what it does.
 COMMANDS = {
     "play": "play by hand, in a window",
     "replay": "show a recorded game, export it or check it",
@@ -33,9 +33,10 @@ COMMANDS = {
     "watch": "watch an agent play in a window",
     "film": "write a film of an agent at play",
     "report": "write one page about an agent: curves, tables, a film, settings",
+    "warm-up": "compile all that the game needs, so that nothing waits for it later",
 }
 # These take no settings, ``--key value``: argparse reads all their options.
-_WITHOUT_SETTINGS = {"play", "replay", "levels"}
+_WITHOUT_SETTINGS = {"play", "replay", "levels", "warm-up"}
 # Options of the other commands that are no settings: without and with a value.
 _FLAGS = {"--help", "--version", "--json", "--trust"}
 _OPTIONS = {"--level", "--out", "--plots", "--resume", "--seconds", "--space", "--study"}
@@ -151,7 +152,7 @@ def _run(words: list[str], overrides: list[tuple[str, str]]) -> int:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name == chosen:
-            module = import_module(f".commands.{name}", __package__)
+            module = import_module(f".commands.{name.replace('-', '_')}", __package__)
             module.add_arguments(command)
     arguments = parser.parse_args(words)
     status: int = module.run(arguments, overrides)

@@ -145,10 +145,9 @@ class CompilerListener(events.Listener):  # type: ignore[misc]
         self._was_collecting = False
 
     def on_start(self, event: Any) -> None:
-        """Note that a function is compiled; tell the user if it is one of this package."""
-        if event.data["dispatcher"].py_func.__module__.startswith(f"{PACKAGE}."):
-            say_compiling()
+        """Note that a function is compiled; tell the user, unless it is for another one."""
         if self._depth == 0:
+            say_compiling(event.data["dispatcher"].py_func.__module__.removeprefix(f"{PACKAGE}."))
             self._was_collecting = gc.isenabled()
             gc.disable()
         self._depth += 1
