@@ -62,8 +62,10 @@ def _use_batches() -> None:
 
 
 def _use_pictures() -> None:
+    from ...envs.draw.overlay import draw_overlay
+
     env = _begin(_FULL, render_mode="rgb_array")
-    env.render()
+    draw_overlay(env.render(), "ROUND 1", ["READY"])
     env.close()
 
 

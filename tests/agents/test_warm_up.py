@@ -11,6 +11,7 @@ from helpers.processes import ARKANOID, run
 PROGRAM = """
 import arkanoid
 import gymnasium as gym
+from arkanoid.envs.draw.overlay import draw_overlay
 from arkanoid.envs.levels import generate_level
 from arkanoid.envs.registration import GAMES
 
@@ -20,7 +21,7 @@ def play(env):
     return env.unwrapped
 
 for name in GAMES:
-    play(gym.make(name, render_mode="rgb_array")).render()
+    draw_overlay(play(gym.make(name, render_mode="rgb_array")).render(), "GAME OVER", ["AGAIN?"])
     play(gym.make_vec(name, num_envs=3))
 for keywords in (
     {"observation": "grid"}, {"observation": "dict"}, {"landing": True}, {"episodic_life": True},
