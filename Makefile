@@ -19,6 +19,7 @@ help:  ## Show the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
 
 train: $(VENV)/train  ## Train an agent for about a minute, and show how well it plays
+	$(BIN)/arkanoid warm-up
 	$(BIN)/arkanoid train quick
 
 test: $(VENV)/dev  ## Run the tests (PYTEST="-k paddle" passes options on)

@@ -20,7 +20,7 @@ from .experiment.programs import ARKANOID, activation, command, start_of
 from .interrupts import INTERRUPTED, noted_interrupts
 from .output import OutputError, checked_output, harmless_notes
 
-# Each subcommand, which is its module's name, and what it does.
+# Each subcommand, which is its module's name (with _ for -), and what it does.
 COMMANDS = {
     "play": "play by hand, in a window",
     "replay": "show a recorded game, export it or check it",
@@ -33,9 +33,10 @@ COMMANDS = {
     "watch": "watch an agent play in a window",
     "film": "write a film of an agent at play",
     "report": "write one page about an agent: curves, tables, a film, settings",
+    "warm-up": "compile all that the game needs, so that nothing waits for it later",
 }
 # These take no settings, ``--key value``.
-_WITHOUT_SETTINGS = {"play", "replay", "levels"}
+_WITHOUT_SETTINGS = {"play", "replay", "levels", "warm-up"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {
@@ -139,7 +140,7 @@ def _run(words: list[str]) -> int:
             allow_abbrev=False,
         )
         if name == chosen:
-            module = import_module(f".commands.{name}", __package__)
+            module = import_module(f".commands.{name.replace('-', '_')}", __package__)
             module.add_arguments(subparser)
             chosen_parser = subparser
             subparser.epilog = f"{subparser.epilog or ''}{_how_to_start()}"

@@ -82,11 +82,24 @@ def _stamp(file: Path) -> tuple[int, int] | None:
 def _imported_files(file: Path, content: bytes) -> frozenset[Path]:
     """Return the files of the package that one file names in its import statements."""
     found = set()
-    for node in ast.walk(ast.parse(content)):
+    for node in _statements(ast.parse(content).body):
         for folder, dotted in _imported_names(node, file):
             path = folder.joinpath(*dotted.split("."))
             found |= {path.with_name(f"{path.name}.py"), path / "__init__.py"}
     return frozenset(path for path in found - _WITHOUT_INFLUENCE if path.is_file())
+
+
+def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield all statements; `ast.walk` would look into all expressions, too."""
+    for statement in body:
+        yield statement
+        for part in (
+            statement,
+            *getattr(statement, "handlers", ()),
+            *getattr(statement, "cases", ()),
+        ):
+            for name in ("body", "orelse", "finalbody"):
+                yield from _statements(getattr(part, name, []))
 
 
 def _imported_names(node: ast.AST, file: Path) -> Iterator[tuple[Path, str]]:

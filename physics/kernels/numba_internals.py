@@ -10,7 +10,6 @@ has one test for each part, which says what is missing and where it is used:
 ``Dispatcher.get_call_template``    to compile once for constants and variables
 ``types.unliteral``                 the same
 ``Dispatcher.compile``              to hold back signals while it loads or compiles
-``CPUDispatcher``                   to refuse a call from Python that would crash
 ``Dispatcher._cache``               to put our cache in place of Numba's
 ``FunctionCache``                   our cache is a subclass
 ``FunctionCache._impl``             to name the files of machine code
@@ -35,7 +34,6 @@ from numba.core import types
 from numba.core.caching import FunctionCache
 from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs to this Numba
 from numba.core.extending import intrinsic
-from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 from numba.np.arrayobj import make_array, populate_array
 
@@ -105,19 +103,6 @@ def hold_signals(dispatcher: Any) -> None:
     dispatcher.compile = compile_whole
 
 
-class InnerDispatcher(CPUDispatcher):  # type: ignore[misc]
-    """A kernel that Python cannot call."""
-
-    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
-        """Refuse; without this, the process would crash."""
-        raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
-
-
-def refuse_python(dispatcher: Any) -> None:
-    """Let a kernel that was compiled `WITHOUT_PYTHON_ENTRY` refuse a call from Python."""
-    dispatcher.__class__ = InnerDispatcher
-
-
 def cache_in(folder: Path, dispatcher: Any) -> None:
     """Let a kernel keep its machine code in a folder."""
     # Numba reads this setting when the cache is made, and offers no argument for it.
@@ -164,10 +149,9 @@ class CompilerListener(events.Listener):  # type: ignore[misc]
         self._was_collecting = False
 
     def on_start(self, event: Any) -> None:
-        """Note that a function is compiled; tell the user if it is one of this package."""
-        if event.data["dispatcher"].py_func.__module__.startswith(f"{PACKAGE}."):
-            say_compiling()
+        """Note that a function is compiled; tell the user, unless it is for another one."""
         if self._depth == 0:
+            say_compiling(event.data["dispatcher"].py_func.__module__.removeprefix(f"{PACKAGE}."))
             self._was_collecting = gc.isenabled()
             gc.disable()
         self._depth += 1

@@ -83,7 +83,7 @@ def total(number):
 """,
     )
     run = scratch.run(
-        "from constants import power, total; report([total(3), len(power.signatures)])"
+        "from constants import power, total; report([total(3), len(power.callee.signatures)])"
     )
     assert run.result == [3 + 4 + 27 + 27, 1]
     assert sorted(run.compiled) == ["power", "total"]

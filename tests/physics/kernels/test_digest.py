@@ -101,10 +101,13 @@ def test_edit_of_what_has_no_influence_recompiles_nothing(scratch: Scratch, name
 
 
 def test_edit_recompiles_only_what_can_depend_on_it(scratch: Scratch) -> None:
+    call = "from arkanoid.physics.callee import scaled; report(scaled(10.0))"
     scratch.run()
+    scratch.run(call)
     scratch.replace("arkanoid/envs/caller.py", "1.0", "2.0")
-    # The compiler asks for the callee's signature, and finds it in the cache.
-    assert scratch.run().compiled == ["shifted"]
+    assert scratch.run(call).compiled == []
+    # A kernel is compiled together with what it calls.
+    assert scratch.run().compiled == ["shifted", "scaled"]
 
 
 def test_debugging_does_not_run_code_without_checks(scratch: Scratch) -> None:

@@ -14,7 +14,6 @@ import pytest
 from arkanoid.physics.kernels import numba_internals
 from numba.core import event, serialize, types
 from numba.core.caching import FunctionCache
-from numba.core.registry import CPUDispatcher
 from numba.np import arrayobj
 
 CHANGED = "this Numba ({}) has another `{}`: see `{}` in physics/kernels/numba_internals.py"
@@ -84,10 +83,6 @@ def test_unliteral_turns_a_constant_into_its_type() -> None:
     expect(
         types.unliteral(types.literal(2)) == types.intp, "unliteral", "compile_once_for_constants"
     )
-
-
-def test_compiled_functions_are_cpu_dispatchers() -> None:
-    expect(type(numba.njit(double)) is CPUDispatcher, "CPUDispatcher", "InnerDispatcher")
 
 
 def test_a_dispatcher_keeps_its_cache_as_an_attribute() -> None:

@@ -1,0 +1,91 @@
+"""How kernels are compiled for the kernels that call them: no machine code before the last caller.
+
+Numba makes machine code of every function, and optimises it again as a part of each function above
+it: in a deep tree of calls that is half of the compiler's work. Here only what Python calls becomes
+machine code. All that it calls, directly or not, is joined to it first, as LLVM's code, which is
+then optimised once, as a whole. So a kernel has two dispatchers: Python calls a `RootDispatcher`,
+and kernels call the `CalleeDispatcher` behind it. Each compiles only if somebody calls it.
+
+What this uses of Numba, mostly undocumented, has its tests in
+``tests/physics/kernels/test_callees.py``.
+"""
+
+from typing import Any
+
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import NativeLowering
+
+
+class _CalleeLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """A function that waits for its callers: it is not optimised, and has no machine code."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+class _Callee:
+    """Stands for a function without machine code, where Numba wants the one that Python calls."""
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _CalleeLowering(NativeLowering):  # type: ignore[misc]
+    """Turns a typed function into LLVM's code, for other functions."""
+
+    _name = "arkanoid_callee_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        """Write the function's library, and tell Numba where its callers find it."""
+        name = state.func_id.func_qualname
+        state.library = _CalleeLibrary(state.targetctx.codegen(), name)
+        state.flags.no_compile = True
+        super().run_pass(state)
+        state.library._ensure_finalized()
+        callee = _Callee()
+        state.targetctx.insert_user_function(callee, state["cr"].fndesc, [state.library])
+        state["cr"] = state["cr"]._replace(cfunc=callee)
+        return True
+
+
+class CalleeCompiler(CompilerBase):  # type: ignore[misc]
+    """Numba's compiler with another last step."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Return Numba's list of passes, one of them ours."""
+        passes = PassManager("arkanoid_callee")
+        for each, title in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
+            passes.add_pass(_CalleeLowering if each is NativeLowering else each, title)
+        passes.finalize()
+        return [passes]
+
+
+class CalleeDispatcher(CPUDispatcher):  # type: ignore[misc]
+    """A kernel for kernels: Python cannot call it."""
+
+    def add_overload(self, result: Any) -> None:
+        """Note what was compiled for one signature."""
+        self.overloads[tuple(result.signature.args)] = result
+
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
+        """Refuse; without this, the process would crash."""
+        raise TypeError(f"{self.__name__} can be called by kernels only; decorate it with @kernel")
+
+
+class RootDispatcher(CPUDispatcher):  # type: ignore[misc]
+    """A kernel for Python. Kernels that call it get its `callee` instead."""
+
+    callee: CalleeDispatcher
+
+    def get_call_template(self, arguments: Any, keywords: Any) -> Any:
+        """Return how a kernel calls it."""
+        return self.callee.get_call_template(arguments, keywords)
+
+    def get_overload(self, signature: Any) -> Any:
+        """Return what stands for its code there."""
+        return self.callee.get_overload(signature)

@@ -1,0 +1,94 @@
+"""Kernels that kernels call: they get no machine code of their own, and Numba has what that needs.
+
+If a new release of Numba lacks or changes a part, its test fails and says what is missing.
+"""
+
+import inspect
+from pathlib import Path
+from typing import Any
+
+import numba
+import pytest
+from arkanoid.physics.kernels import kernel
+from arkanoid.physics.kernels.numba_internals import is_interpreted
+from numba.core import codegen, compiler, typed_passes
+from numba.core.compiler_machinery import PassManager
+from numba.core.registry import CPUDispatcher
+
+pytestmark = pytest.mark.skipif(is_interpreted(), reason="nothing is compiled")
+
+CHANGED = f"this Numba ({numba.__version__}) has another `{{}}`: see physics/kernels/callees.py"
+
+
+def doubled(number: Any) -> Any:
+    return number + number
+
+
+def test_only_what_python_calls_becomes_machine_code(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Each function was optimised again in each one above it: half of the first step's wait."""
+    # Otherwise an earlier run has left the compiled kernel.
+    monkeypatch.setenv("ARKANOID_CACHE_DIR", str(tmp_path))
+    finished = []
+    plain = codegen.JITCodeLibrary._finalize_specific
+
+    def finish(library: Any) -> None:
+        finished.append(library.name)
+        plain(library)
+
+    monkeypatch.setattr(codegen.JITCodeLibrary, "_finalize_specific", finish)
+    callee = kernel(doubled)
+
+    @kernel
+    def caller(number: Any) -> Any:
+        return callee(number) + callee(number)
+
+    assert caller(2.5) == 10.0
+    assert any("caller" in name for name in finished)
+    assert not any("doubled" in name for name in finished)
+    assert callee.signatures == []  # type: ignore[attr-defined]
+    assert len(caller.signatures) == 1  # type: ignore[attr-defined]
+
+
+def test_a_kernel_serves_python_and_kernels() -> None:
+    callee = kernel(doubled)
+
+    @kernel
+    def caller(number: Any) -> Any:
+        return callee(number) + callee(1)
+
+    assert [callee(2), caller(2), callee(2.5), caller(2.5)] == [4, 6, 5.0, 7.0]
+
+
+def test_compiled_functions_are_cpu_dispatchers() -> None:
+    assert type(numba.njit(doubled)) is CPUDispatcher, CHANGED.format("CPUDispatcher")
+
+
+@pytest.mark.parametrize("name", ["add_overload", "get_call_template", "get_overload"])
+def test_a_dispatcher_has_its_methods(name: str) -> None:
+    assert hasattr(CPUDispatcher, name), CHANGED.format(f"Dispatcher.{name}")
+
+
+def test_a_library_is_finished_in_steps() -> None:
+    for name in ("_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals"):
+        assert hasattr(codegen.JITCodeLibrary, name), CHANGED.format(f"JITCodeLibrary.{name}")
+
+
+def test_lowering_may_leave_the_machine_code_out() -> None:
+    source = inspect.getsource(typed_passes.NativeLowering.run_pass)
+    assert "flags.no_compile" in source, CHANGED.format("Flags.no_compile")
+    assert "cfunc" in compiler._LowerResult._fields, CHANGED.format("_LowerResult")
+
+
+def test_lowering_is_one_of_the_passes() -> None:
+    passes: list[Any] = []
+
+    class Looking(compiler.CompilerBase):  # type: ignore[misc]
+        def define_pipelines(self) -> list[PassManager]:
+            pipeline = compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+            passes.extend(each for each, _ in pipeline.passes)
+            return [pipeline]
+
+    assert numba.njit(doubled, pipeline_class=Looking)(2) == 4
+    assert typed_passes.NativeLowering in passes, CHANGED.format("define_nopython_pipeline")
