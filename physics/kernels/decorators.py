@@ -78,9 +78,8 @@ def _compile(function: F, **options: bool) -> F:
     hold_signals(compiled)
     # The options are a part of the key: Numba's own does not hold them.
     compiler = f"{compiler_state()} {sorted(options.items())}"
-    if UNCACHED in os.environ:
-        return compiled
-    folder = writable_folder(Path(function.__code__.co_filename), compiler)
+    file = Path(function.__code__.co_filename)
+    folder = None if UNCACHED in os.environ else writable_folder(file, compiler)
     if folder is not None:
         cache_in(folder, compiled)
     return cast(F, compiled)
