@@ -76,10 +76,13 @@ class TensorBatch:
         self.observations: dict[str, Tensor] = {}
         self.finals: dict[str, Tensor] = {}
         self._forget: list[Callable[[], None]] = []
+        add: dict[str, Callable[[Any], None]] = {
+            "vector": self._add_vector,
+            "grid": self._add_grid,
+            "rgb": self._add_pictures,
+        }
         for kind, observer in self._observers().items():
-            {"vector": self._add_vector, "grid": self._add_grid, "rgb": self._add_pictures}[kind](
-                observer
-            )
+            add[kind](observer)
         self._record["here"] = True
         self._on_device = self._tensor(self._record)
         runs = STEPS[host.config.observation]
@@ -233,7 +236,7 @@ class TensorBatch:
         self._remember("drawn", np.zeros((count, len(sheets)), Drawn), lambda drawn: None)
         self._put("views", sheets[0].views)
         for channel, sheet in enumerate(sheets):
-            arrays = sheet.palette, sheet.background, sheet.looks
+            arrays: tuple[Any, ...] = sheet.palette, sheet.background, sheet.looks
             for field, array in zip(("palettes", "backgrounds", "looks"), arrays, strict=True):
                 self._record[field][0, channel] = self._tensor(array).data_ptr()
         looks = sheets[0].looks

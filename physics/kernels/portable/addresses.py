@@ -14,7 +14,7 @@ def _numpy_array(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
     """Do the same where kernels run interpreted."""
     size = math.prod(shape) * dtype.itemsize
     # What comes out of a record is a number of NumPy's.
-    memory = (ctypes.c_char * int(size)).from_address(int(address))
+    memory: Any = (ctypes.c_char * int(size)).from_address(int(address))
     return np.frombuffer(memory, dtype).reshape(shape)
 
 
