@@ -54,6 +54,11 @@ VECTOR_KEYWORDS = {
         "writes only what has changed",
     ),
     "threads": ("None", "how many threads step the games; None: as many as their number is worth"),
+    "device": (
+        "None",
+        "`'cuda'`, `'cuda:1'`, ...: the games run [on a graphics card](gpu.md) and give tensors; "
+        "None: on the processor, with NumPy arrays",
+    ),
 }
 METHODS = {
     "action_masks()": "which actions do something in the coming decision: bool `[actions]`, or "

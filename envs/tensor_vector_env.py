@@ -3,10 +3,17 @@
 from typing import Any
 
 import numpy as np
-import torch
 from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
-from torch import Tensor
+
+try:
+    import torch
+    from torch import Tensor
+except ImportError as error:
+    raise ImportError(
+        "device=... gives tensors of torch, which is missing: "
+        'pip install "arkanoid[gpu]" brings it; without device=... the results are NumPy arrays'
+    ) from error
 
 from .batch.batch import Autoreset
 from .state import INFO_FIELDS, Worlds
@@ -28,6 +35,10 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
       are meant; they are in each step's infos, whether an episode has ended or not.
     - Resets by `reset`, snapshots and frames go through this processor, and take their time.
     - `record` is not there: replays are made by the other class.
+    - `threads` changes nothing: a card decides itself, and ``device="cpu"``, which is there for
+      tests and slow, has one thread.
+
+    It is experimental.
 
     Args:
         device: ``"cuda"``, ``"cuda:1"``, ... or ``"cpu"``.
@@ -47,13 +58,19 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
         self.device = read_device(device)
         super().__init__(num_envs, **keywords)
         try:
-            self._tensors = TensorBatch(self._batch, self.device)
+            # Also where somebody makes it inside of inference mode, and steps outside of it.
+            with torch.inference_mode(False):
+                self._tensors = TensorBatch(self._batch, self.device)
         except torch.OutOfMemoryError as error:
             raise MemoryError(
                 f"num_envs={num_envs} worlds do not fit into the memory of {self.device}"
             ) from error
         self._was_reset = np.zeros(num_envs, np.bool_)
         self._owners = torch.ones(num_envs, dtype=torch.bool, device=self.device)
+
+    def __getstate__(self) -> dict[str, Any]:
+        self._tensors.pull()
+        return self.__dict__.copy()
 
     @property
     def illegal_actions(self) -> Tensor:
@@ -91,6 +108,7 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
         Raises:
             TypeError, ValueError: the actions have another form.
             gymnasium.error.ResetNeeded: a world was never reset.
+            RuntimeError: another call is in progress.
         """
         if not self._was_reset.all():
             never = np.flatnonzero(~self._was_reset)[:8].tolist()
@@ -101,7 +119,7 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
         infos: dict[str, Any] = {}
         if self._mode is Autoreset.SAME_STEP:
             infos = self._final_parts(terminated | truncated)
-        infos |= self._table(tensors.infos, self._owners)
+        infos |= self._table(tensors.infos, self._own(self._owners))
         return self._seen(), self._own(tensors.rewards), terminated, truncated, infos
 
     def observe(self) -> Any:
@@ -218,21 +236,28 @@ def read_device(device: Any) -> torch.device:
         found = None
     if found is None or found.type not in ("cpu", "cuda"):
         raise ValueError(f"device must be 'cuda', 'cuda:1', ... or 'cpu'; got {device!r}")
-    if found.type == "cuda":
-        _check_card(found)
-    return found
+    if found.type == "cpu":
+        return torch.device("cpu")
+    _check_card(found)
+    # With its number, as its tensors name it.
+    index = torch.cuda.current_device() if found.index is None else found.index
+    return torch.device("cuda", index)
 
 
 def _check_card(device: torch.device) -> None:
-    if not torch.cuda.is_available():
-        built = torch.version.cuda is None
-        why = "this torch was built for processors only" if built else "torch finds no NVIDIA card"
+    why = None
+    if torch.version.cuda is None:
+        why = "this torch was built without CUDA (pytorch.org says how to install the other one)"
+    elif not torch.cuda.is_available():
+        why = "torch finds no NVIDIA card, or no driver for it (nvidia-smi shows both)"
+    if why is not None:
         raise RuntimeError(
-            f"device={str(device)!r}: {why}; device='cpu' plays the same games without one"
+            f"device={str(device)!r}: {why}; without device=... the same games run on the processor"
         )
     count = torch.cuda.device_count()
     if device.index is not None and device.index >= count:
-        raise RuntimeError(f"device={str(device)!r}: there are {count} cards, numbered from 0")
+        there = "is 1 card, number 0" if count == 1 else f"are {count} cards, numbered from 0"
+        raise RuntimeError(f"device={str(device)!r}: there {there}")
     if torch.cuda.get_device_capability(device) < (8, 0):
         raise RuntimeError(
             f"{torch.cuda.get_device_name(device)} is too old: the game's kernels need compute "

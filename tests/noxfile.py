@@ -97,7 +97,7 @@ def lock(session: nox.Session) -> None:
     )
     hashed = ("--generate-hashes", "--constraint")
     extras = ("--extra", "dev", "--extra", "docs", "--extra", "bench")
-    extras += ("--extra", "mlflow", "--extra", "wandb")
+    extras += ("--extra", "gpu", "--extra", "mlflow", "--extra", "wandb")
     session.run(*resolve, *extras, "--output-file", "constraints.txt", silent=True)
     locked = (*hashed, "constraints.txt", "--output-file", "requirements.txt")
     session.run(*resolve, *extras, *locked, silent=True)

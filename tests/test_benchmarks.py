@@ -64,3 +64,12 @@ def test_throughput_measures_everything_and_judges_goals_by_the_printed_figures(
                 assert (goal[2] == "met") == (reached > wanted), label
             judged += 1
     assert judged == 4 + 2 + 2 + 2 + 4, table
+
+
+def test_gpu_compares_the_device_with_the_processor_and_measures_every_kind() -> None:
+    """With the same entries on the processor, since a card is rarely at hand."""
+    table = run(FOLDER / "gpu.py", "--device", "cpu", "--quick", "--no-peers")
+    assert len(re.findall(r"decisions: equal$", table, re.MULTILINE)) == 2, table
+    assert "DIFFERENT" not in table
+    assert len(re.findall(r"^  .* worlds, cpu +[\d,]+ +[\d.]+ x$", table, re.MULTILINE)) == 6, table
+    assert len(re.findall(r"^  .* worlds, all cores +[\d,]+$", table, re.MULTILINE)) == 6, table

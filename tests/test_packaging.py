@@ -17,7 +17,9 @@ from packaging.utils import canonicalize_name
 NOT_PACKAGES = ("tests/", "docs/", ".")  # folders of the root
 # The files of constraints, and the extras that are installed under each.
 LOCKS = {
-    "constraints.txt": ("train", "play", "minari", "mlflow", "wandb", "bench", "docs", "dev"),
+    "constraints.txt": (
+        *("train", "play", "minari", "gpu", "mlflow", "wandb", "bench", "docs", "dev"),
+    ),
     "constraints-ray.txt": ("train", "ray"),
 }
 LONGEST_PATH = 120  # letters, of the 260 that a whole path may have on Windows

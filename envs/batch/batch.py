@@ -174,8 +174,12 @@ class Batch:
             waits |= over
         if waits.any():
             raise why_refused(self.worlds)
+        self.end_interrupted_step()
+
+    def end_interrupted_step(self) -> None:
+        """Begin the episodes that a step in same-step mode should have begun, but for Ctrl-C."""
+        over = self.worlds["done"] != 0
         if self.autoreset is Autoreset.SAME_STEP and over.any():
-            # The step in which they ended was interrupted.
             for block in self._all_blocks():
                 block.reset(over[block.where])
 

@@ -51,6 +51,7 @@ class TensorBatch:
         self._record = np.zeros(1, Arrays)
         self._kept: list[Tensor] = []
         self._is_ahead = False
+        self._is_whole = True
         self._worlds = self._put("worlds", host.worlds)
         self._outcomes = self._put("outcomes", host.outcomes)
         self._put("rules", host.rules)
@@ -75,10 +76,13 @@ class TensorBatch:
         self.observations: dict[str, Tensor] = {}
         self.finals: dict[str, Tensor] = {}
         self._forget: list[Callable[[], None]] = []
+        add: dict[str, Callable[[Any], None]] = {
+            "vector": self._add_vector,
+            "grid": self._add_grid,
+            "rgb": self._add_pictures,
+        }
         for kind, observer in self._observers().items():
-            {"vector": self._add_vector, "grid": self._add_grid, "rgb": self._add_pictures}[kind](
-                observer
-            )
+            add[kind](observer)
         self._record["here"] = True
         self._on_device = self._tensor(self._record)
         runs = STEPS[host.config.observation]
@@ -89,33 +93,67 @@ class TensorBatch:
             if host.autoreset is Autoreset.SAME_STEP or not run.same_step
         ]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Addresses are of no use to a copy: it gets tensors of its own.
+        self.pull()
+        return _again, (self.host, self.device, self.illegal)
+
     def step(self, actions: Any) -> None:
         """Play one decision in each world: integers [n], or velocity and fire, [n, 2].
 
         Raises:
             TypeError, ValueError: they have another form. Which values are illegal is not looked
                 at here, because that would wait for the device.
+            RuntimeError: another call is in progress.
         """
-        self._actions.copy_(self._read(actions))
-        self._is_ahead = True
+        self.host.alone.run(self._step, self._read(actions))
+
+    def _step(self, actions: Tensor) -> None:
+        if not self._is_whole:
+            self._mend()
+        self._actions.copy_(actions)
+        # Until all of it is done: Ctrl-C may come at any time.
+        self._is_ahead, self._is_whole = True, False
         address = self._on_device.data_ptr()
         for run, items in self._steps:
             run(items, address)
+        self._is_whole = True
+
+    def _mend(self) -> None:
+        """Begin the episodes that an interrupted step has ended and not begun again."""
+        self._pull()
+        self.host.end_interrupted_step()
+        self._push()
 
     def pull(self) -> None:
-        """Give the worlds to the host, if they were stepped since it had them."""
-        if self._is_ahead:
-            host = self.host
-            shown = np.empty(host.observations.shape, host.observations.dtype)
-            for kind, tensor in self.observations.items():
-                into = shown if shown.dtype.names is None else shown[kind]
-                into[...] = tensor.cpu().numpy()
-            worlds, outcomes = (each.cpu().numpy() for each in (self._worlds, self._outcomes))
-            host.adopt(worlds, outcomes, shown)
-            self._is_ahead = False
+        """Give the worlds to the host, if they were stepped since it had them.
+
+        Raises:
+            RuntimeError: another call is in progress.
+        """
+        self.host.alone.run(self._pull)
+
+    def _pull(self) -> None:
+        if not self._is_ahead:
+            return
+        host = self.host
+        shown = np.empty(host.observations.shape, host.observations.dtype)
+        for kind, tensor in self.observations.items():
+            into = shown if shown.dtype.names is None else shown[kind]
+            into[...] = tensor.cpu().numpy()
+        worlds, outcomes = (each.cpu().numpy() for each in (self._worlds, self._outcomes))
+        host.adopt(worlds, outcomes, shown)
+        self._is_ahead = False
 
     def push(self) -> None:
-        """Take the worlds of the host."""
+        """Take the worlds of the host.
+
+        Raises:
+            RuntimeError: another call is in progress.
+        """
+        self.host.alone.run(self._push)
+
+    def _push(self) -> None:
         host = self.host
         _copy(self._worlds, host.worlds)
         _copy(self._outcomes, host.outcomes)
@@ -143,15 +181,19 @@ class TensorBatch:
     def _read(self, actions: Any) -> Tensor:
         """Return actions as a tensor of the right form."""
         try:
-            tensor = torch.as_tensor(actions)
+            if isinstance(actions, np.ndarray):
+                # torch warns of arrays that may not be written, and refuses those read backwards.
+                actions = actions.copy() if not actions.flags.writeable else actions
+                actions = np.ascontiguousarray(actions)
+            # Detached: the worlds take no part in the gradients of a network that chose velocities.
+            tensor = torch.as_tensor(actions).detach()
         except (RuntimeError, TypeError, ValueError) as error:
             raise TypeError(f"{actions!r:.200} is no tensor of actions: {error}") from error
         shape = tuple(self._actions.shape)
-        whole = not (
-            tensor.is_floating_point() or tensor.is_complex() or tensor.dtype == torch.bool
-        )
         discrete = len(shape) == 1
-        if tuple(tensor.shape) != shape or (discrete and not whole) or tensor.is_complex():
+        no_number = tensor.is_complex() or tensor.dtype == torch.bool
+        no_integer = discrete and tensor.is_floating_point()
+        if tuple(tensor.shape) != shape or no_number or no_integer:
             what = f"{shape[0]} integers" if discrete else f"numbers of shape {shape}, in {BOX}"
             raise ValueError(
                 f"actions must be {what}; got {tensor.dtype} of shape {tuple(tensor.shape)}"
@@ -194,7 +236,7 @@ class TensorBatch:
         self._remember("drawn", np.zeros((count, len(sheets)), Drawn), lambda drawn: None)
         self._put("views", sheets[0].views)
         for channel, sheet in enumerate(sheets):
-            arrays = sheet.palette, sheet.background, sheet.looks
+            arrays: tuple[Any, ...] = sheet.palette, sheet.background, sheet.looks
             for field, array in zip(("palettes", "backgrounds", "looks"), arrays, strict=True):
                 self._record[field][0, channel] = self._tensor(array).data_ptr()
         looks = sheets[0].looks
@@ -233,6 +275,14 @@ class TensorBatch:
         _copy(tensor, array)
         self._kept.append(tensor)
         return tensor
+
+
+def _again(host: Batch, device: torch.device, illegal: Tensor) -> TensorBatch:
+    """Return the batch of a host that was copied or unpickled."""
+    batch = TensorBatch(host, device)
+    batch.push()
+    batch.illegal.copy_(illegal)
+    return batch
 
 
 def _as_tensor(array: NDArray[Any]) -> Tensor:

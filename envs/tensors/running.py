@@ -14,6 +14,10 @@ RunEntry = Callable[[int, int], None]
 class Runs:
     """Entries, ready to run on a device.
 
+    Args:
+        entries: of one file.
+        device: if it is a card, with its index.
+
     Raises:
         ImportError, RuntimeError: see `CudaKernels`.
     """
@@ -25,8 +29,8 @@ class Runs:
             # Imported on demand: it needs a package that only cards do.
             from ...physics.kernels.portable.cuda import CudaKernels
 
-            card = torch.cuda.current_device() if device.index is None else device.index
-            self._on_card = CudaKernels(entries, card)
+            with torch.cuda.device(device):  # torch goes on with the card that it had before
+                self._on_card = CudaKernels(entries, device.index)
 
     def of(self, entry: Entry, threads: int) -> RunEntry:
         """Return what runs one of them; threads: of a block, on a card."""
@@ -41,6 +45,8 @@ class Runs:
         launch, device = self._on_card.launcher(entry, threads), self._device
 
         def run_there(count: int, address: int) -> None:
-            launch(count, address, torch.cuda.current_stream(device).cuda_stream)
+            # A stream may be the default one, which each card has.
+            with torch.cuda.device(device):
+                launch(count, address, torch.cuda.current_stream(device).cuda_stream)
 
         return run_there

@@ -13,7 +13,8 @@ from ..numba_internals import addressed_array, is_interpreted, stack_bytes
 def _numpy_array(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
     """Do the same where kernels run interpreted."""
     size = math.prod(shape) * dtype.itemsize
-    memory = (ctypes.c_char * size).from_address(address)
+    # What comes out of a record is a number of NumPy's.
+    memory: Any = (ctypes.c_char * int(size)).from_address(int(address))
     return np.frombuffer(memory, dtype).reshape(shape)
 
 

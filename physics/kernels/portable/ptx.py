@@ -5,21 +5,27 @@ bits: a multiplication and an addition are never joined, and divisions and squar
 IEEE 754 says. A thread of the card runs an entry for one item.
 """
 
+import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from uuid import uuid4
 
 import llvmlite
 import llvmlite.binding as llvm
 import numba
 
 from ..cache import writable_folder
-from ..messages import say_compiling_for
+from ..digest import digest
+from ..messages import say_compiling_for, say_unwritable
 from ..sealed import seal, unseal
 from .entries import Entry, compile_entries
 
 # Every card since Ampere (2020) runs it.
 ARCHITECTURE = "sm_80"
 
+_MAKERS = ("ptx.py", "afresh.py")
 _TRIPLE = "nvptx64-nvidia-cuda"
 _MARK = b"ARKAPTX\0"
 _VERSION = 1
@@ -107,21 +113,42 @@ def make_ptx(entries: Sequence[Entry]) -> str:
     Raises:
         RuntimeError: the entries could not be compiled.
     """
-    compiler = f"ptx {numba.__version__} {llvmlite.__version__} {ARCHITECTURE} {entries!r}"
+    # Entries don't import what makes PTX of them.
+    makers = [digest(Path(__file__).with_name(name), "") for name in _MAKERS]
+    compiler = f"ptx {numba.__version__} {llvmlite.__version__} {makers} {entries!r}"
     # All entries of one file: the digest covers what it imports.
     (file,) = {entry.file for entry in entries}
     folder = writable_folder(file, compiler)
     kept = None if folder is None else folder / "entries.ptx"
-    if kept is not None and kept.is_file():
+    ptx = None if kept is None else _load(kept)
+    if ptx is None:
+        say_compiling_for("graphics cards")
+        ptx = _assemble(compile_entries(entries), entries)
+        if kept is not None:
+            _save(kept, ptx)
+    return ptx
+
+
+def _load(kept: Path) -> str | None:
+    """Return the PTX of a file; None if it can't be read. A damaged file is deleted."""
+    with suppress(OSError):
         try:
             return bytes(unseal("file of PTX", _MARK, _VERSION, kept.read_bytes())).decode()
         except ValueError:
-            kept.unlink(missing_ok=True)
-    say_compiling_for("graphics cards")
-    ptx = _assemble(compile_entries(entries), entries)
-    if kept is not None:
-        kept.write_bytes(seal(_MARK, _VERSION, ptx.encode()))
-    return ptx
+            kept.unlink()
+    return None
+
+
+def _save(kept: Path, ptx: str) -> None:
+    """Keep PTX in a file, or go on without. Other processes see the whole file or none."""
+    unfinished = kept.with_name(f"{kept.name}.{uuid4().hex[:16]}")
+    try:
+        unfinished.write_bytes(seal(_MARK, _VERSION, ptx.encode()))
+        os.replace(unfinished, kept)
+    except OSError as error:
+        say_unwritable(kept.parents[1], error)
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
 
 
 def _assemble(code: str, entries: Sequence[Entry]) -> str:

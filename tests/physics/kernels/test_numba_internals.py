@@ -202,3 +202,31 @@ def test_compile_is_asked_for_on_the_dispatcher() -> None:
     del asked[:]
     compiled(2.0)
     expect(len(asked) == 1, "Dispatcher.compile(signature)", "hold_signals")
+
+
+def test_arrays_at_addresses_and_on_the_stack() -> None:
+    dtype = np.dtype(np.int64)
+
+    @numba.njit
+    def last(address: Any) -> Any:
+        return numba_internals.addressed_array(address, (2, 2), dtype)[1, 1]
+
+    expect(last(np.arange(4).ctypes.data) == 3, "array", "addressed_array")
+
+    @numba.njit
+    def count() -> Any:
+        memory = numba_internals.stack_bytes(24)
+        memory[:] = 1
+        return memory.sum() * 100 + memory.size
+
+    expect(count() == 2424, "cgutils.alloca_once", "stack_bytes")
+
+
+def test_code_for_other_machines_can_be_had() -> None:
+    """What `portable.afresh` takes from a dispatcher."""
+    compiled = numba.njit(double)
+    compiled.compile("(int64,)")
+    (signature,) = compiled.signatures
+    function = compiled.overloads[signature].fndesc.llvm_func_name
+    code = compiled.inspect_llvm(signature)
+    expect(f"@{function}(" in code.replace('"', ""), "Dispatcher.inspect_llvm", "afresh")
