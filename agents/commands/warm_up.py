@@ -40,8 +40,8 @@ def _use_game() -> None:
 
 
 def _use_observations() -> None:
-    for keywords in ({"observation": "grid"}, {"landing": True}):
-        _begin(_FULL, **keywords)
+    _begin(_FULL, observation="grid")
+    _begin(_FULL, landing=True)
 
 
 def _use_levels() -> None:

@@ -183,11 +183,9 @@ class DeviceLoop:
 
     def _step(self, loss: Tensor) -> None:
         gradients = torch.autograd.grad(loss, self._parameters)
-        norm = torch.linalg.vector_norm(torch.stack(torch._foreach_norm(gradients)))
-        share = (self._model.max_grad_norm / (norm + 1e-6)).clamp(max=1.0)
-        torch._foreach_mul_(gradients, share)
         for parameter, gradient in zip(self._parameters, gradients, strict=True):
             parameter.grad = gradient
+        torch.nn.utils.clip_grad_norm_(self._parameters, self._model.max_grad_norm)
         (group,) = self._policy.optimizer.param_groups
         plain = group["lr"], group.get("capturable", False)
         if self._device.type == "cuda":
