@@ -46,6 +46,20 @@ def writable_folder(file: Path, compiler: str) -> Path | None:
     return folder if _prepare(folder) else None
 
 
+def why_unkept() -> str | None:
+    """Return why no machine code can be kept, in a clause; None if it can."""
+    root = _cache_root()
+    if root is None:
+        return "there is no cache folder"
+    kernels = root / "kernels"
+    try:
+        kernels.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=kernels).close()
+    except OSError as error:
+        return f"{kernels} cannot be written ({error.strerror})"
+    return None
+
+
 def _cache_root() -> Path | None:
     """Return the folder that the variable names, or else the user's; None without a home."""
     try:
