@@ -117,6 +117,7 @@ BLIND = {
     "play": "arkanoid film game.gif",
     "play --lite --level mine.txt": "--level mine.txt",
     "watch RUN": "arkanoid film RUN game.gif",
+    "watch RUN --level seed:3": "film RUN game.gif --level seed:3",
     "watch": "no display",
 }
 

@@ -7,6 +7,8 @@ from typing import Any
 
 import gymnasium as gym
 
+from ..experiment.errors import SettingsError
+
 _EPILOG = """\
 The compiled code is kept on disk, so later starts do not wait. Without this command, each part is
 compiled when it is first needed. Other processes may start meanwhile: they compile what they miss.
@@ -23,7 +25,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
-    """Use each part once; show what is being compiled. Return the exit status."""
+    """Use each part once; show what is being compiled. Return the exit status.
+
+    Raises `SettingsError` if nothing would be kept.
+    """
+    # Imported on demand: the help needs no package of the engine.
+    from ...physics.kernels.cache import why_unkept
+
+    reason = why_unkept()
+    if reason is not None:
+        raise SettingsError(
+            f"{reason}, so nothing would be kept; set ARKANOID_CACHE_DIR to a folder that can be "
+            "written"
+        )
     begun = time.perf_counter()
     for number, (part, use) in enumerate(_PARTS.items(), 1):
         print(f"{number} of {len(_PARTS)}: {part}", flush=True)

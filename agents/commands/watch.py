@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..experiment.files import quoted
 from ..experiment.programs import arkanoid
 from .arguments import add_level, add_model
 from .screen import require_screen
@@ -30,7 +31,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.experiment(overrides)
     named = [Path(arguments.model)] if arguments.model else []
-    require_screen(f"a film needs none: {arkanoid('film', *named, 'game.gif')}")
+    level = ["--level", quoted(arguments.level)] if arguments.level else []
+    require_screen(f"a film needs none: {arkanoid('film', *named, 'game.gif', *level)}")
     from ...envs.play.show import run_show
     from ..measure.suites import WHOLE_GAMES, find_starts
 

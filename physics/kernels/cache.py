@@ -34,7 +34,7 @@ def writable_folder(file: Path, compiler: str) -> Path | None:
     Returns:
         None if nothing can be kept: there is no such file (the function was typed at a prompt or
         lies in an archive), sources were edited after this process read them, or no cache folder
-        can be written.
+        can be written, and none is filled.
     """
     file = file.resolve()
     if not file.is_file() or is_edited(file):
@@ -44,6 +44,20 @@ def writable_folder(file: Path, compiler: str) -> Path | None:
         return None
     folder = root / "kernels" / digest(file, compiler)
     return folder if _prepare(folder) else None
+
+
+def why_unkept() -> str | None:
+    """Return why no machine code can be kept, in a clause; None if it can."""
+    root = _cache_root()
+    if root is None:
+        return "there is no cache folder"
+    kernels = root / "kernels"
+    try:
+        kernels.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=kernels).close()
+    except OSError as error:
+        return f"{kernels} cannot be written ({error.strerror})"
+    return None
 
 
 def _cache_root() -> Path | None:
@@ -58,8 +72,9 @@ def _cache_root() -> Path | None:
 
 @cache
 def _prepare(folder: Path) -> bool:
-    """Make the folder, mark it as in use, and return whether it can be written.
+    """Make the folder, mark it as in use, and return whether it is there to be read or written.
 
+    A folder that somebody else has filled, as in a container image, need not be written.
     Numba itself would fall back to ``__pycache__``, and with it to stale machine code.
     """
     try:
@@ -69,9 +84,18 @@ def _prepare(folder: Path) -> bool:
         os.utime(folder)
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
+        if _is_filled(folder):
+            return True
         say_unwritable(folder.parent, error)
         return False
     return True
+
+
+def _is_filled(folder: Path) -> bool:
+    try:
+        return any(each.is_dir() and os.access(each, os.R_OK) for each in folder.iterdir())
+    except OSError:
+        return False
 
 
 def _prune(kernels: Path) -> None:

@@ -12,6 +12,8 @@ has one test for each part, which says what is missing and where it is used:
 ``Dispatcher.compile``              to hold back signals while it loads or compiles
 ``Dispatcher._cache``               to put our cache in place of Numba's
 ``FunctionCache``                   our cache is a subclass
+``CompileResultCacheImpl``,
+``UserProvidedCacheLocator``        to read a folder that may not be written
 ``FunctionCache._impl``             to name the files of machine code
 ``FunctionCache._cache_file``       to put our files in place of Numba's
 ``serialize.dumps``                 to write them
@@ -31,7 +33,7 @@ from typing import Any, cast
 import numba
 from numba.core import event as events
 from numba.core import types
-from numba.core.caching import FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs to this Numba
 from numba.core.extending import intrinsic
 from numba.core.serialize import dumps
@@ -114,8 +116,25 @@ def cache_in(folder: Path, dispatcher: Any) -> None:
         _numba.config.CACHE_DIR = previous
 
 
+class FolderLocator(UserProvidedCacheLocator):  # type: ignore[misc]
+    """Where one function's code is kept; the folder may be one that can only be read."""
+
+    def ensure_cache_path(self) -> None:
+        """Raise OSError if there is no folder, and none can be made."""
+        if not Path(self.get_cache_path()).is_dir():
+            super().ensure_cache_path()
+
+
+class FolderCode(CompileResultCacheImpl):  # type: ignore[misc]
+    """What is kept of a function: nothing is ever kept beside its source."""
+
+    _locator_classes = (FolderLocator,)
+
+
 class KernelCache(FunctionCache):  # type: ignore[misc]
     """Numba's cache of one function, safe beside other processes and on a full or broken disk."""
+
+    _impl_class = FolderCode
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)

@@ -53,3 +53,12 @@ event.register("numba:compile", compiled)
     program.write_text(listening + PROGRAM + told)
     after = run(sys.executable, program, changes=changes)
     assert after.stdout.split() == ["[]"]
+
+
+def test_it_does_not_compile_what_cannot_be_kept(tmp_path: Path) -> None:
+    """It compiled for a minute, kept nothing, and ended with "all is compiled"."""
+    (tmp_path / "file").touch()
+    changes = {"ARKANOID_CACHE_DIR": str(tmp_path / "file")}
+    done = run(*ARKANOID, "warm-up", changes=changes, status=2)
+    assert done.stdout == ""
+    assert "nothing would be kept; set ARKANOID_CACHE_DIR" in done.stderr

@@ -298,8 +298,11 @@ def _differs(policy: ActorCriticPolicy, name: str) -> bool:
 def _one_array(policy: ActorCriticPolicy) -> Tensor:
     """Return an array [weights]; the gradients of the policy's parameters become its parts.
 
-    So they are cleared, measured and shortened by one operation each.
+    So they are cleared, measured and shortened by one operation each. Frozen parameters have none:
+    the optimiser would follow what is left of an earlier one.
     """
+    for parameter in policy.parameters():
+        parameter.grad = None
     parameters = [each for each in policy.parameters() if each.requires_grad]
     whole = torch.zeros(sum(each.numel() for each in parameters), device=policy.device)
     parts = whole.split([each.numel() for each in parameters])

@@ -1,4 +1,4 @@
-"""What `FastPPO` does not know, it leaves to the loops of stable-baselines3."""
+"""`FastPPO` on what few train: what it leaves to stable-baselines3, and frozen weights."""
 
 from typing import Any
 
@@ -52,3 +52,19 @@ def test_what_it_does_not_know_takes_the_other_way_and_it_says_so(kind: str, wor
     models[1].learn(32)
     for mine, other in zip(*(model.policy.parameters() for model in models), strict=True):
         torch.testing.assert_close(mine, other, rtol=0, atol=0)
+
+
+def test_weights_that_are_frozen_between_trainings_stay() -> None:
+    """They went on: their gradients of the last update were left, and the optimiser took them.
+
+    Freezing all but the last layers after a first training is how a model is fine-tuned.
+    """
+    model = FastPPO("MlpPolicy", "CartPole-v1", n_steps=32, batch_size=32, seed=0, device="cpu")
+    model.learn(32)
+    frozen = list(model.policy.mlp_extractor.parameters())
+    for parameter in frozen:
+        parameter.requires_grad_(False)
+    before = [parameter.clone() for parameter in model.policy.parameters()]
+    model.learn(32)
+    for parameter, old in zip(model.policy.parameters(), before, strict=True):
+        assert torch.equal(parameter, old) != parameter.requires_grad

@@ -58,6 +58,24 @@ report(shifted(10.0))
     assert not list(scratch.code.rglob("*.nb[ci]"))
 
 
+def test_a_filled_folder_need_not_be_written(scratch: Scratch) -> None:
+    """Code in a container image was not read by a user who may not write there.
+
+    Every process compiled again. (Root may write everywhere: therefore the calls are replaced.)
+    """
+    scratch.run()
+    refusing = """
+import os, tempfile
+def refuse(*arguments, **keywords):
+    raise PermissionError(13, "Permission denied")
+os.utime = tempfile.TemporaryFile = refuse
+"""
+    warm = scratch.run(refusing + CALL)
+    assert warm.result == 21.0
+    assert warm.compiled == []
+    assert "ARKANOID_CACHE_DIR" not in warm.stderr
+
+
 @pytest.mark.parametrize("variable", ["", "~/cache"])
 def test_programs_run_for_a_user_without_a_home(scratch: Scratch, variable: str) -> None:
     """In a container with an unknown user, `import arkanoid.physics` raised an error.
