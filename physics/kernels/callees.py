@@ -10,7 +10,9 @@ What this uses of Numba, mostly undocumented, has its tests in
 ``tests/physics/kernels/test_callees.py``.
 """
 
-from typing import Any
+# Numba's own methods have no types, of which pyright makes up some.
+# pyright: reportIncompatibleMethodOverride=false
+from typing import Any, cast
 
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
@@ -84,8 +86,8 @@ class RootDispatcher(CPUDispatcher):  # type: ignore[misc]
 
     def get_call_template(self, arguments: Any, keywords: Any) -> Any:
         """Return how a kernel calls it."""
-        return self.callee.get_call_template(arguments, keywords)
+        return cast(Any, self).callee.get_call_template(arguments, keywords)
 
     def get_overload(self, signature: Any) -> Any:
         """Return what stands for its code there."""
-        return self.callee.get_overload(signature)
+        return cast(Any, self).callee.get_overload(signature)

@@ -268,9 +268,9 @@ def test_the_board_shows_lines_and_counts(capsys: pytest.CaptureFixture[str]) ->
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        (["--jobs", "0"], "--jobs must be at least 1"),
-        (["--trials", "0"], "--trials must be at least 1"),
-        (["--budget", "0"], "--budget must be processor seconds"),
+        (["--jobs", "0"], "--jobs: must be an integer, at least 1"),
+        (["--trials", "0"], "--trials: must be an integer, at least 1"),
+        (["--budget", "0"], "--budget: must be a number above 0"),
         (["--training.timesteps", "1000"], "give --budget"),
         (["--validation.every", "1000"], "give --budget"),
     ],

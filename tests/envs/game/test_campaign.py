@@ -246,11 +246,11 @@ class TestResetOptions:
     ("levels", "message"),
     [
         ("seeds:9-3", "not empty"),
-        ("seeds:3", "must be like 'seeds:100-200'"),
+        ("seeds:3", "seed:7, and several as seeds:100-200"),
         (range(0), "not empty"),
         (range(0, 10, 2), "step 1"),
         (range(-5, 5), "from 0 to"),
-        ("seeds:0-99999999999999999999", "from 0 to"),
+        ("seeds:0-99999999999999999999", "several as seeds:100-200"),
     ],
 )
 def test_illegal_ranges_of_seeds_are_refused(levels, message):
