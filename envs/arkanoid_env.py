@@ -247,25 +247,16 @@ class ArkanoidEnv(gym.Env[Observation, Any]):
         return keys_to_action(self.config)
 
     def __repr__(self) -> str:
-        different = [
-            f"{name}={value!r}"
-            for name, value in vars(self.config).items()
-            if value != getattr(type(self.config), name)
-        ]
-        world = self._batch.worlds[0]
-        now = f"round {world.round_number}, score {world.score}, lives {world.lives}"
-        shown = now if self._batch.seeded[0] else "not reset yet"
-        return f"<ArkanoidEnv({', '.join(different)}): {shown}>"
+        from .play.shown import differences, progress
+
+        keywords = ", ".join(differences(self.config))
+        return f"<ArkanoidEnv({keywords}): {progress(self._batch.worlds)}>"
 
     def _repr_png_(self) -> bytes | None:
         """Return the present picture as a PNG file, which notebooks show; None before a reset."""
-        if not self._batch.seeded[0]:
-            return None
-        # Imported on demand: playing without pictures needs none of the drawing kernels.
-        from .draw.picture import draw_world
-        from .draw.png import png_bytes
+        from .play.shown import pictures_png
 
-        return png_bytes(draw_world(self._batch.worlds, self._batch.rules, 0, *self._frame_size))
+        return pictures_png(self._batch.worlds, self._batch.rules, self._frame_size)
 
     def __getstate__(self) -> dict[str, Any]:
         # A copy opens a window of its own.

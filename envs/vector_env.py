@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from .actions import action_meanings
 from .batch.batch import Autoreset, Batch
+from .batch.infos import final_infos, infos_of
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .batch.starts import set_start
-from .batch.stepping import tabulate_outcomes
 from .checks import check_boolean, check_integer, check_seeds
 from .config import MOST_WORLDS, Config
 from .hints import BATCH_KEYWORDS
@@ -29,7 +29,7 @@ from .interface import (
 )
 from .masks import action_masks
 from .observe.parts import copy_of, parts_of
-from .state import INFO_FIELDS, Worlds
+from .state import Worlds
 
 if TYPE_CHECKING:
     from .batch.recorder import Recorder
@@ -147,7 +147,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
             if seeds[index] is None:
                 seeds[index] = int(self.np_random.integers(1 << 62))
         self._batch.reset(mask, options, seeds if seed is not None or unseeded else None)
-        return self._observations(), self._infos(self._batch.outcomes, mask)
+        return self._observations(), infos_of(self._batch.outcomes, mask)
 
     def set_start(self, world: int, options: dict[str, Any]) -> None:
         """Set how a world's next games begin, as `reset` does, while its present one goes on."""
@@ -181,8 +181,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         terminated: NDArray[np.bool_] = outcomes["terminated"].copy()
         truncated: NDArray[np.bool_] = outcomes["truncated"].copy()
         if self._mode is Autoreset.SAME_STEP:
-            infos = self._final_infos(terminated | truncated)
-        infos |= self._infos(outcomes, self._everywhere)
+            infos = final_infos(batch, terminated | truncated)
+        infos |= infos_of(outcomes, self._everywhere)
         return self._observations(), outcomes["reward"].copy(), terminated, truncated, infos
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
@@ -308,7 +308,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
                 environment is as it was then.
         """
         restore_snapshot(self._batch, snapshot)
-        return self._observations(), self._infos(self._batch.outcomes, self._everywhere)
+        return self._observations(), infos_of(self._batch.outcomes, self._everywhere)
 
     def spread(
         self, snapshot: bytes, seed: int | None = None
@@ -325,7 +325,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         """
         seeds = check_seeds(seed, self.num_envs)
         spread_snapshot(self._batch, snapshot, seeds)
-        return self._observations(), self._infos(self._batch.outcomes, self._everywhere)
+        return self._observations(), infos_of(self._batch.outcomes, self._everywhere)
 
     def record(self, world: int = 0) -> "Recorder":
         """Begin to record the games of a world, for replays, each from its beginning.
@@ -337,6 +337,18 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         from .batch.recorder import Recorder
 
         return Recorder(self._batch, world)
+
+    def __repr__(self) -> str:
+        from .play.shown import differences, progress
+
+        keywords = ", ".join([f"num_envs={self.num_envs}", *differences(self.config)])
+        return f"<{type(self).__name__}({keywords}): {progress(self.state)}>"
+
+    def _repr_png_(self) -> bytes | None:
+        """Return the first sixteen worlds as a PNG file, which notebooks show."""
+        from .play.shown import pictures_png
+
+        return pictures_png(self.state, self._batch.rules, self._frame_size)
 
     def close(self, **kwargs: Any) -> None:
         """End the threads, also those that a step after an earlier `close` has started."""
@@ -362,33 +374,6 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
     def _observations(self) -> Observations:
         observations = self._batch.observations
         return copy_of(observations) if self.copy else parts_of(observations)
-
-    def _infos(self, outcomes: Any, mask: NDArray[np.bool_]) -> dict[str, Any]:
-        """Return what outcomes tell, and for each key the mask of the worlds that have it."""
-        table = np.empty((len(INFO_FIELDS), self.num_envs), np.int64)
-        tabulate_outcomes(outcomes, table)
-        if not mask.all():
-            table *= mask
-        owners = mask.copy()
-        infos: dict[str, Any] = {}
-        for key, values in zip(INFO_FIELDS, table, strict=True):
-            infos[key] = values
-            infos[f"_{key}"] = owners
-        return infos
-
-    def _final_infos(self, done: NDArray[np.bool_]) -> dict[str, Any]:
-        """Return the last observations and infos of the episodes that ended in this step."""
-        if not done.any():
-            return {}
-        final = np.full(self.num_envs, None, object)
-        for index in np.flatnonzero(done):
-            final[index] = copy_of(self._batch.final_observations[index])
-        return {
-            "final_obs": final,
-            "_final_obs": done,
-            "final_info": self._infos(self._batch.finals, done),
-            "_final_info": done.copy(),
-        }
 
 
 def _read_mode(mode: str | AutoresetMode) -> AutoresetMode:

@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from helpers.notebooks import outputs, write_program
 from helpers.pages import PAGES, program, relative
 from helpers.processes import run_python
 from helpers.repository import DOCS, EXAMPLES, ROOT
@@ -42,6 +43,16 @@ def test_a_broken_promise_is_noticed(tmp_path: Path) -> None:
 @pytest.mark.parametrize("example", sorted(EXAMPLES.glob("*.py")), ids=relative)
 def test_example_runs(example: Path, tmp_path: Path) -> None:
     assert run_python(example, cwd=tmp_path).stdout.strip()
+
+
+def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path) -> None:
+    """As a newcomer would run it, but with a short training; it shows two games, films and SVG."""
+    notebook = EXAMPLES / "first_hour.ipynb"
+    script = write_program(notebook, tmp_path, DECISIONS=20_000, GAMES=2)
+    printed = run_python(script, cwd=tmp_path).stdout.splitlines()
+    shown = [line.removeprefix("shown: ") for line in printed if line.startswith("shown: ")]
+    assert shown == ["png", "png", "gif", "gif", "svg"]
+    assert outputs(notebook) == []  # a film of an old version would be shown until it is run
 
 
 def test_figures_of_the_readme_are_measured_ones() -> None:

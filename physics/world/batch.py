@@ -57,6 +57,13 @@ class WorldBatch:
     def __len__(self) -> int:
         return len(self._states)
 
+    def __repr__(self) -> str:
+        times = self.times
+        first, last = f"{times.min():g}", f"{times.max():g}"
+        when = first if first == last else f"{first} to {last}"
+        bodies = f"{len(self.moving)} moving bodies each"
+        return f"<WorldBatch of {len(self)} worlds ({bodies}) at time {when}>"
+
     @property
     def times(self) -> FloatArray:
         """How long each world has been stepped, float64 [num_worlds], a copy."""

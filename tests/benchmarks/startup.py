@@ -3,7 +3,7 @@
 Run: python tests/benchmarks/startup.py [--warm 5]
 
 Every line is a new process. At a cold start the folder of compiled kernels is empty, as after an
-installation or an edit of a kernel; every later start is warm. The goals are 20 s and 1.5 s on two
+installation or an edit of a kernel; every later start is warm. The goals are 12 s and 0.6 s on two
 cores.
 """
 
@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-GOALS = {"cold": 20.0, "warm": 1.5}  # seconds
+GOALS = {"cold": 12.0, "warm": 0.6}  # seconds
 PHASES = ("import", "make", "reset", "step")
 PROGRAM = """
 import json, sys, time

@@ -7,6 +7,7 @@ from arkanoid.envs import ArkanoidEnv
 from arkanoid.envs.draw.palette import CAPSULE_BODY, LUMA, PALETTE
 from arkanoid.envs.game.capsules import capsule_by_weight
 from arkanoid.envs.observe.planes import STATUS
+from arkanoid.envs.play.things import CAPSULE_THINGS
 from arkanoid.envs.rules import CAPSULES, FAST, PADDLE_TOP
 
 NOOP, FIRE = 0, 3
@@ -29,6 +30,8 @@ assert "capsule_fast" in STATUS
 assert sorted(STATUS.values()) == list(range(len(STATUS)))
 colours = PALETTE[CAPSULE_BODY + 1 : CAPSULE_BODY + 1 + CAPSULES]
 assert np.diff(np.sort(colours @ LUMA)).min() >= 20
+
+assert [thing.name.split()[1] for thing in CAPSULE_THINGS][-1] == "fast"  # on the help card
 
 drawn = [capsule_by_weight((place + 0.5) / 65536) for place in range(65536)]
 assert abs(drawn.count(FAST) / 65536 - 250 / 256 / 16) < 1e-4

@@ -4,7 +4,15 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from arkanoid.physics import AxisAlignedHalfPlane, Body, HalfPlane, Particle, Rectangle, World
+from arkanoid.physics import (
+    AxisAlignedHalfPlane,
+    Body,
+    HalfPlane,
+    Particle,
+    Rectangle,
+    World,
+    WorldBatch,
+)
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -30,6 +38,12 @@ def test_a_world_says_what_is_in_it() -> None:
     world = room()
     world.step(0.5)
     assert repr(world) == "<World of 5 bodies (1 dynamic, 1 sensors) at time 0.5>"
+
+
+def test_a_batch_says_how_many_worlds_it_has_and_where_they_are_in_time() -> None:
+    batch = WorldBatch(room(), 3)
+    batch.step(0.5)
+    assert repr(batch) == "<WorldBatch of 3 worlds (1 moving bodies each) at time 0.5>"
 
 
 def test_bodies_normals_and_paths_are_where_the_engine_has_them() -> None:
