@@ -58,3 +58,11 @@ def remove_unfinished(folder: Path) -> None:
     """Remove unfinished files that a killed process left; no other process may write there."""
     for path in folder.glob(f"{_UNFINISHED}*"):
         path.unlink(missing_ok=True)
+
+
+def why_no_kernels_are_kept() -> str | None:
+    """Return why machine code can't be kept in the cache folder, in a clause; None if it can."""
+    # Imported on demand: only `arkanoid warm-up` asks.
+    from ..physics.kernels.cache import why_unkept
+
+    return why_unkept()

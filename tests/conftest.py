@@ -38,3 +38,9 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     # Not a plain hook: those of a conftest are asked about what lies below its own folder only.
     config.pluginmanager.register(RootIsNotATestPackage())
+
+
+@pytest.fixture
+def dummy_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """SDL's screen without a display: Gymnasium's checker opens a window, too."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")

@@ -56,6 +56,7 @@ ORDER = {
         learn
         measure
         experiment pretrained
+        tensor_adapter
         adapter interrupts output
     """,
 }

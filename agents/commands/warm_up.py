@@ -30,9 +30,9 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     Raises `SettingsError` if nothing would be kept.
     """
     # Imported on demand: the help needs no package of the engine.
-    from ...physics.kernels.cache import why_unkept
+    from ...envs.atomic import why_no_kernels_are_kept
 
-    reason = why_unkept()
+    reason = why_no_kernels_are_kept()
     if reason is not None:
         raise SettingsError(
             f"{reason}, so nothing would be kept; set ARKANOID_CACHE_DIR to a folder that can be "

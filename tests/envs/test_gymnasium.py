@@ -26,6 +26,7 @@ GAMES = [
 
 @pytest.mark.parametrize("name", ["Arkanoid-v0", "ArkanoidLite-v0"])
 @pytest.mark.parametrize("actions", ["discrete6", "discrete4", "discrete3", "box"])
+@pytest.mark.usefixtures("dummy_screen")
 def test_gymnasium_env_checker(name, actions):
     env = gym.make(name, actions=actions, render_mode="rgb_array")
     check_env(env.unwrapped)

@@ -21,6 +21,7 @@ from gymnasium.wrappers import TimeAwareObservation
 
 
 @pytest.mark.parametrize("name", GAMES)
+@pytest.mark.usefixtures("dummy_screen")
 def test_every_id_is_checked_and_plays(name):
     check_env(gym.make(name, render_mode="rgb_array", render_size=64).unwrapped)
     env = gym.make(name)

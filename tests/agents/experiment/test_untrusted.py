@@ -29,7 +29,7 @@ from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn.model import load_policy, make_model, save_model
 from arkanoid.agents.learn.tensors import read_tensors, write_tensors
 from arkanoid.agents.measure.episodes import adapt
-from arkanoid.envs.play import window
+from arkanoid.envs.play import show, window
 from stable_baselines3 import PPO
 
 # Every command that reads a model, with little to play.
@@ -73,7 +73,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunFolder:
             self.close()
             return False
 
-    monkeypatch.setattr(window, "Window", Show)
+    monkeypatch.setattr(show, "Window", Show)
     return RunFolder(folder)
 
 

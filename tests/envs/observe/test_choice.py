@@ -96,6 +96,7 @@ def test_compiled_and_interpreted_give_the_same_bits():
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.usefixtures("dummy_screen")
 def test_gymnasium_accepts_it(kind):
     check_env(gym.make("Arkanoid-v0", **kind).unwrapped)
     env = gym.make("Arkanoid-v0", **kind)
