@@ -150,7 +150,7 @@ class FastPPO(PPO):
         self.policy.set_training_mode(False)
         infos = loop.collect()
         actions = loop.actions
-        self.num_timesteps += actions[..., 0].numel() if actions.dim() > 2 else actions.numel()
+        self.num_timesteps += self.n_steps * env.num_envs
         self._update_info_buffer(infos, np.ones(len(infos), np.bool_))
         callback.update_locals(locals())
         self._goes_on = bool(callback.on_step())
