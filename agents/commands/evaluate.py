@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_new_folder
-from .arguments import add_trust, output_width
+from .arguments import MEASURED, add_trust, check_settings, output_width
 
 if TYPE_CHECKING:
     from ..experiment.runs import ModelFile
     from ..experiment.settings import Experiment
+
+_FILM = "evaluation.film_seconds"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,6 +43,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Evaluate, print and draw; return the exit status."""
     from ..experiment.runs import ModelFile
 
+    check_settings(overrides, MEASURED, but=[_FILM])
     models = [ModelFile.find(name, arguments.trust) for name in arguments.models or [None]]
     experiment = models[0].experiment(overrides)
     agents = group_by_experiment(models, overrides)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...envs.atomic import write_atomically
+from ...envs.checks import counted
 from ...envs.reading import read_limited
 from .errors import SettingsError
 from .files import cause
@@ -71,10 +72,10 @@ def describe_lineage(lineage: Mapping[str, Any] | None) -> str | None:
     name, decisions, weights = lineage["name"], lineage["decisions"], lineage["weights"][:16]
     if lineage["kind"] == MODEL:
         return (
-            f"It began with the weights of {name}, trained for {decisions:,} decisions "
+            f"It began with the weights of {name}, trained for {counted(decisions, 'decision')} "
             f"(SHA-256 of the weights: {weights}...)."
         )
     return (
-        f"It began as a clone of the data set {name}, which has {decisions:,} decisions "
+        f"It began as a clone of the data set {name}, which has {counted(decisions, 'decision')} "
         f"(SHA-256 of the weights: {weights}...)."
     )

@@ -61,8 +61,8 @@ class WorldBatch:
         times = self.times
         first, last = f"{times.min():g}", f"{times.max():g}"
         when = first if first == last else f"{first} to {last}"
-        bodies = f"{len(self.moving)} moving bodies each"
-        return f"<WorldBatch of {len(self)} worlds ({bodies}) at time {when}>"
+        bodies = f"moving bodies in each: {len(self.moving)}"
+        return f"<WorldBatch of {len(self)} ({bodies}) at time {when}>"
 
     @property
     def times(self) -> FloatArray:

@@ -208,9 +208,9 @@ class World:
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
-                f"a body used up its {self._scene.max_hits} hits of a step, and stayed where it "
-                "was for the rest of it. It is squeezed, or so fast that it needs shorter steps or "
-                "a larger max_hits",
+                f"a body used up the hits of a step (max_hits={self._scene.max_hits}), and stayed "
+                "where it was for the rest of it. It is squeezed, or so fast that it needs shorter "
+                "steps or a larger max_hits",
                 HitLimitWarning,
                 stacklevel=2,
             )
