@@ -7,6 +7,7 @@ runs is imported: playing by hand needs none of the packages for training.
 
 import os
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
@@ -166,8 +167,16 @@ def _run(words: list[str]) -> int:
     arguments, left = parser.parse_known_args(words)
     if left:
         raise chosen_parser.unknown(left[0])
+    _refuse_empty(arguments)
     status: int = module.run(arguments, overrides)
     return status
+
+
+def _refuse_empty(arguments: Namespace) -> None:
+    """Raise `SettingsError` if a text is empty, as that of a shell's variable which is not set."""
+    for name, value in vars(arguments).items():
+        if value == "" or (isinstance(value, list) and "" in value):
+            raise SettingsError(f"an empty text is given for {name}; give one, or leave it out")
 
 
 def split_overrides(

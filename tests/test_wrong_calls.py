@@ -67,6 +67,12 @@ CALLS = {
     "replay mine.txt --from 3": "--export",
     "replay mine.txt --verify --height 64": "--verify",
     "levels spiral --difficulty 0.3": "of generated levels",
+    # Lists, empty texts, and names that are none
+    "evaluate RUN --evaluation.baselines planner": """typed as '["planner"]'""",
+    "train --network.hidden 64": "typed as '[64]'",
+    "film RUN x.gif --level=": "an empty text is given for level",
+    "levels seeds:9-3": "got 'seeds:9-3'",
+    "dataset a/b-v0 nobody": "neither a baseline",
     # Settings
     "train --ppo.gama 0.9": "'ppo.gamma'",
     "train --seed -1": "at least 0",

@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...envs.checks import counted
@@ -75,6 +76,10 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         )
     elif players[0] in BASELINES:
         written = _write_baseline(arguments, overrides)
+    elif not Path(players[0]).exists():
+        raise SettingsError(
+            f"{players[0]}: neither a baseline ({', '.join(BASELINES)}) nor a file or folder"
+        )
     else:
         written = _write_model(arguments, overrides)
     print(

@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..experiment.runs import ModelFile
 
     out = Path(arguments.out)
-    if out.suffix not in (".html", ".md"):
+    if out.suffix.lower() not in (".html", ".md"):
         raise SettingsError(f"{out}: a report's name must end in .html or .md")
     check_folder(out)
     check_settings(overrides, ("name", *MEASURED))
