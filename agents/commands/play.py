@@ -85,8 +85,9 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     save = _Saver(arguments.save)
     try:
         # After the campaign come generated levels.
-        if arguments.difficulty is not None and level not in (None, *CAMPAIGN):
-            check_difficulty([level])
+        in_campaign = level is None or level in CAMPAIGN
+        if arguments.difficulty is not None and not in_campaign:
+            check_difficulty([str(level)])
         config, options = hand_config(level, arguments.difficulty, **keywords)
         interrupted = play_by_hand(config, options, seed, save, save.scores)
     except OSError as error:

@@ -38,7 +38,7 @@ from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs to this Numba
 from numba.core.extending import intrinsic
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 from numba.np.arrayobj import make_array, populate_array
 

@@ -14,7 +14,7 @@ import pytest
 from arkanoid.physics.kernels import numba_internals
 from numba.core import event, serialize, types
 from numba.core.caching import FunctionCache
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 from numba.np import arrayobj
 
 CHANGED = "this Numba ({}) has another `{}`: see `{}` in physics/kernels/numba_internals.py"
