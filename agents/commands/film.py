@@ -36,7 +36,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..measure.suites import WHOLE_GAMES, find_starts
 
     starts = find_starts(experiment, arguments.level) if arguments.level else (WHOLE_GAMES,)
-    if len(starts) > 1:
+    start, *others = starts
+    if others:
         raise SettingsError(
             f"{arguments.level} are {len(starts)} levels, and a film shows one of them: name it"
         )
@@ -44,7 +45,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..show.frames import film_policy
 
     try:
-        film_policy(experiment, load_policy(model, experiment), out, starts[0], arguments.seconds)
+        film_policy(experiment, load_policy(model, experiment), out, start, arguments.seconds)
     except OSError as error:
         raise SettingsError(f"{out}: cannot be written: {error}") from None
     print(out)

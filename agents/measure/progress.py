@@ -55,7 +55,7 @@ class _Bar(tqdm):  # type: ignore[misc]
     """tqdm's bar; its form has parts, one a line, of which it shows as many as fit."""
 
     @staticmethod
-    def format_meter(
+    def format_meter(  # pyright: ignore[reportIncompatibleMethodOverride]
         n: float,
         total: float,
         elapsed: float,
