@@ -12,12 +12,13 @@ import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.lineage import describe_lineage
-from arkanoid.agents.experiment.runs import ModelFile, RunFolder, pretrained_run
+from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.learn import training
 from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.show.page import as_html, as_markdown, table
 from arkanoid.agents.show.plots import as_png, plot_curves
 from arkanoid.agents.show.report import _model_row, _origin_rows
+from helpers.runs import packaged_copy
 
 OTHERS: list[Any] = [
     *(None, True, -1, 0, 1.5, 10**400, 1e308, -1e308, math.nan, "", "\x1b[31m", [], {}),
@@ -59,8 +60,7 @@ def forged_notes(way: tuple[Any, ...], text: str) -> str:
 @pytest.fixture
 def run(tmp_path: Path) -> RunFolder:
     """A copy of the packaged run."""
-    shutil.copytree(pretrained_run(), tmp_path / "run")
-    return RunFolder(tmp_path / "run")
+    return packaged_copy(tmp_path / "run")
 
 
 def show(run: RunFolder) -> str:
