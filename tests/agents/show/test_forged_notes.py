@@ -67,7 +67,7 @@ def show(run: RunFolder) -> str:
     """Return what a report shows of a run's notes."""
     rows = [[""] * 7, _model_row(ModelFile.find(str(run.path)))]
     notes = run.read_notes()
-    rows += [[*row, "", "", "", "", ""] for row in _origin_rows(notes)]
+    rows += [[*row, "", "", "", "", ""] for row in _origin_rows([notes])]
     rows.append([describe_lineage(notes.get("lineage")), *[""] * 6])
     return str(table(rows))
 
@@ -158,3 +158,10 @@ def test_a_page_shows_what_a_terminal_would_obey() -> None:
     for page in (as_markdown(facts, {"play.gif": "play.gif"}), as_html(facts, pictures)):
         assert r"\x1b[31m" in page.replace("\\[", "[").replace("\\\\", "\\")
         assert {letter for letter in page if category(letter) == "Cc"} == {"\n"}
+
+
+def test_a_report_names_the_commits_of_all_its_runs() -> None:
+    """Once it named that of the first run, whatever the others were trained with."""
+    runs = [{"git": {"commit": commit, "changed": False}} for commit in ("a1", "b2", "a1")]
+    rows = list(_origin_rows([*runs, {"git": None}]))
+    assert rows == [["git: commit", "a1, b2"], ["git: changed", False]]
