@@ -13,10 +13,12 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
+from zipfile import ZipFile
 
 import pytest
-from arkanoid.agents.experiment.runs import pretrained_run
+from arkanoid.agents.experiment.packed import WEIGHTS
 from helpers.processes import ARKANOID
+from helpers.runs import packaged_copy
 
 if sys.platform == "win32":
     pytest.skip("there are no pseudo-terminals", allow_module_level=True)
@@ -186,13 +188,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a run, and with files that are not what a call takes them for."""
     folder = tmp_path_factory.mktemp("calls")
     run = folder / "RUN"
-    shutil.copytree(pretrained_run(), run, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    packaged_copy(run)
     (run / "notes.txt").write_text("Monday: trained.\n")
     cut = folder / "cut"
     cut.mkdir()
     shutil.copy(run / "config.toml", cut)
     (cut / "model.zip").write_bytes((run / "model.zip").read_bytes()[:3000])
-    shutil.copy(run / "model.zip", folder / "others.zip")
+    with ZipFile(run / "model.zip") as ours, ZipFile(folder / "others.zip", "w") as others:
+        others.writestr(WEIGHTS, ours.read(WEIGHTS))
     (folder / "mine.txt").write_text("name: Mine\n\n.rrrrrrrrr.\n")
     (folder / "wrong.txt").write_text("name: Wrong\n\n.rkrrrrrrr.\n")
     return folder

@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 from ..experiment.errors import SettingsError
 from ..experiment.numbers import parse_whole
+from ..experiment.packaged import DEFAULT_AGENT, packaged_agents
 from ..experiment.programs import arkanoid
 
 # The settings that decide how a saved model plays.
@@ -196,8 +197,8 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         "model",
         metavar="MODEL",
         nargs="?",
-        help="the folder of a run or a model's .zip file; default: the agent that comes with the "
-        "package",
+        help="the folder of a run, a model's .zip file, or the name of an agent in the package: "
+        f"{', '.join(packaged_agents())}; default: {DEFAULT_AGENT}",
     )
     add_trust(parser)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_new_folder
+from ..experiment.packaged import DEFAULT_AGENT, packaged_agents
 from .arguments import MEASURED, add_trust, check_settings, output_width
 
 if TYPE_CHECKING:
@@ -27,8 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "models",
         metavar="MODEL",
         nargs="*",
-        help="folders of runs, or model files in them; runs that differ only in their seeds are "
-        "measured as one agent; default: the agent that comes with the package",
+        help="folders of runs, model files, or names of agents in the package: "
+        f"{', '.join(packaged_agents())}; runs that differ only in their seeds are measured as one "
+        f"agent; default: {DEFAULT_AGENT}",
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     parser.add_argument("--plots", metavar="FOLDER", help="draw the results into this folder")

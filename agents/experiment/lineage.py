@@ -15,6 +15,7 @@ from ...envs.checks import counted
 from ...envs.reading import read_limited
 from .errors import SettingsError
 from .files import cause
+from .packaged import find_agent
 from .runs import RunFolder
 
 MODEL = "model"
@@ -25,9 +26,11 @@ LARGEST_MODEL = 2**32  # bytes of a file
 def find_model(name: str) -> Path:
     """Return a model's file: that which is named, or the best or else the last one of a run.
 
+    The run may be a packaged agent's, by its name.
+
     Raises `SettingsError` if there is none.
     """
-    path = Path(name)
+    path = find_agent(name)
     run = RunFolder(path)
     candidates = (run.best, run.model) if path.is_dir() else (path,)
     for candidate in candidates:
