@@ -307,7 +307,8 @@ def draw_seam(axes: Axes) -> None:
         overlap = contact(tile, walker)
         tip = walker.position + 2 * overlap.depth * overlap.normal
         arrow(axes, f"normal-{number}", walker.position, tip, (INK, ACCENT)[number], head=5.0)
-        label(axes, (0.9, 1.0 - 0.35 * number), f"depth {overlap.depth:.2f}", (INK, ACCENT)[number])
+        words = f"depth {overlap.depth:.2f}"
+        label(axes, (1.5, 1.35 - 0.3 * number), words, (INK, ACCENT)[number], ha="right")
 
 
 def draw_wedge(axes: Axes) -> None:
