@@ -8,6 +8,7 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
+from ..pairs.touching import touch_margins
 from ..shapes.records import Edges, ShapeRecord
 from ..tolerances import NO_APPROACH, SAME_POINT
 from .clock_time import elapsed, later
@@ -144,8 +145,21 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             continue
         if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
             continue
+        margin_x, margin_y = touch_margins(
+            shapes, edges, own.collider, trait.collider, x, y, their_x, their_y
+        )
         time, normal_x, normal_y = impact_between(
-            shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, best + slack
+            shapes,
+            edges,
+            own.collider,
+            trait.collider,
+            dx,
+            dy,
+            ux,
+            uy,
+            best + slack,
+            margin_x,
+            margin_y,
         )
         if time == math.inf:
             continue
