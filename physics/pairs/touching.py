@@ -12,22 +12,26 @@ Margins are two lengths, along x and along y. With margins of 0, numbers are com
 import math
 
 from ..kernels import kernel
-from ..shapes.records import Edges, ShapeRecord, Shapes
+from ..shapes.records import Edges, Shapes
 from ..tolerances import NO_APPROACH, TOUCH
 
 
 @kernel
-def _extents(shape: ShapeRecord, edges: Edges) -> tuple[float, float]:
-    """Return the largest coordinates, along x and y, from which a shape is made."""
-    x: float = max(-shape.lower_x, shape.upper_x)
-    y: float = max(-shape.lower_y, shape.upper_y)
-    if x == math.inf or y == math.inf:
-        x = y = 0.0
-        for index in range(shape.first, shape.first + shape.count):
-            edge = edges[index]
-            x = max(x, max(abs(edge.start_x), abs(edge.end_x)))
-            y = max(y, max(abs(edge.start_y), abs(edge.end_y)))
-    return x, y
+def reach_of(shapes: Shapes, edges: Edges, index: int, x: float, y: float) -> tuple[float, float]:
+    """Return the largest coordinates, along x and y, from which a shape at (x, y) is made.
+
+    A position and a size both count: the rounding of their sum depends on the larger one.
+    """
+    shape = shapes[index]
+    reach_x: float = max(-shape.lower_x, shape.upper_x)
+    reach_y: float = max(-shape.lower_y, shape.upper_y)
+    if reach_x == math.inf or reach_y == math.inf:
+        reach_x = reach_y = 0.0
+        for number in range(shape.first, shape.first + shape.count):
+            edge = edges[number]
+            reach_x = max(reach_x, max(abs(edge.start_x), abs(edge.end_x)))
+            reach_y = max(reach_y, max(abs(edge.start_y), abs(edge.end_y)))
+    return reach_x + abs(x), reach_y + abs(y)
 
 
 @kernel
@@ -35,12 +39,9 @@ def touch_margins(
     shapes: Shapes, edges: Edges, a: int, b: int, ax: float, ay: float, bx: float, by: float
 ) -> tuple[float, float]:
     """Return the margins (along x, along y) of shape a at (ax, ay) and shape b at (bx, by)."""
-    a_x, a_y = _extents(shapes[a], edges)
-    b_x, b_y = _extents(shapes[b], edges)
-    return (
-        TOUCH * (abs(ax) + abs(bx) + (a_x + b_x)),
-        TOUCH * (abs(ay) + abs(by) + (a_y + b_y)),
-    )
+    a_x, a_y = reach_of(shapes, edges, a, ax, ay)
+    b_x, b_y = reach_of(shapes, edges, b, bx, by)
+    return TOUCH * (a_x + b_x), TOUCH * (a_y + b_y)
 
 
 @kernel
