@@ -30,3 +30,7 @@ RELAX_ROUNDS = 64
 # A fraction of the coordinates of where two bodies meet. Points closer than this count as one:
 # which of two static bodies is met first there is a matter of rounding.
 SAME_POINT = 1e-15
+
+# Lengths and speeds. The engine multiplies up to two of them, and the squares of larger ones are no
+# numbers.
+FARTHEST = 1e140
