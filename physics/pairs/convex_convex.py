@@ -76,7 +76,7 @@ def contact_convex_convex(
 
 
 @kernel
-def _slower_axis(
+def _slowest_axis(
     shapes: Shapes,
     edges: Edges,
     a: int,
@@ -90,21 +90,24 @@ def _slower_axis(
     time: float,
     normal_x: float,
     normal_y: float,
-) -> tuple[float, float]:
-    """Return the axis along which the two approach most slowly, of all that touch at the time.
+) -> tuple[float, float, bool]:
+    """Return (x, y, is_corner): the slowest of all axes that touch at the time of an impact.
 
-    At a corner there are several: a slower one than the given normal changes less. So a body that
-    comes down almost along a floor does not meet the side of the next tile.
+    If corner meets corner there are several: a slower one than the given normal changes less. So a
+    body that comes down almost along a floor does not meet the side of the next tile.
     """
+    first_x, first_y, is_corner = normal_x, normal_y, False
     margin = margin_along(normal_x, normal_y, margin_x, margin_y)
     least = closing_speed(normal_x, normal_y, vx, vy, margin)
     for axis in range(shapes[a].count + shapes[b].count):
         x, y, gap = separation_along(shapes, edges, a, b, axis, dx, dy)
         margin = margin_along(x, y, margin_x, margin_y)
         closing = closing_speed(x, y, vx, vy, margin)
-        if closing < least and axis_times(gap, closing, margin)[1] > time:
-            normal_x, normal_y, least = x, y, closing
-    return normal_x, normal_y
+        if axis_times(gap, closing, margin)[1] > time:
+            is_corner = is_corner or abs(first_x * y - first_y * x) > PARALLEL
+            if closing < least:
+                normal_x, normal_y, least = x, y, closing
+    return normal_x, normal_y, is_corner
 
 
 @kernel
@@ -142,10 +145,12 @@ def sweep_convex_convex(
             shapes, edges, a, b, dx, dy, margin_x, margin_y
         )
         return 0.0, normal_x, normal_y
-    if sinks >= parts or time > duration:
+    if time >= parts or time > duration:
         return NO_IMPACT
     if margin_x > 0.0 or margin_y > 0.0:
-        normal_x, normal_y = _slower_axis(
+        normal_x, normal_y, is_corner = _slowest_axis(
             shapes, edges, a, b, dx, dy, vx, vy, margin_x, margin_y, time, normal_x, normal_y
         )
+        if is_corner and sinks >= parts:
+            return NO_IMPACT
     return time, normal_x, normal_y

@@ -66,12 +66,6 @@ def sweep_disc_box(
     gap_y = (abs(dy) - half_height) - radius
     if (gap_x >= -margin_x and vx >= 0.0) or (gap_y >= -margin_y and vy >= 0.0):
         return NO_IMPACT
-    if abs(gap_x) < margin_x or abs(gap_y) < margin_y:
-        # It touches a face: perhaps it has passed the box before it overlaps it.
-        _, sinks_x, parts_x = interval_times(abs(dx), half_width + radius, vx, margin_x)
-        _, sinks_y, parts_y = interval_times(abs(dy), half_height + radius, vy, margin_y)
-        if max(sinks_x, sinks_y) >= min(parts_x, parts_y):
-            return NO_IMPACT
     # The face entered last is the one that is hit (compared without a division). Within reach of
     # both, but not of the box, the disc is beyond their corner.
     is_x_last = gap_y < 0.0 or gap_x * vy <= gap_y * vx
@@ -97,4 +91,11 @@ def sweep_disc_box(
         )
     if time > duration:
         return NO_IMPACT
+    is_corner = normal_x != 0.0 and normal_y != 0.0
+    if is_corner and (abs(gap_x) < margin_x or abs(gap_y) < margin_y):
+        # It touches a face's line, beyond the face: perhaps it passes before it overlaps the box.
+        _, sinks_x, parts_x = interval_times(abs(dx), half_width + radius, vx, margin_x)
+        _, sinks_y, parts_y = interval_times(abs(dy), half_height + radius, vy, margin_y)
+        if max(sinks_x, sinks_y) >= min(parts_x, parts_y):
+            return NO_IMPACT
     return time, sign_x * normal_x, sign_y * normal_y

@@ -88,8 +88,8 @@ def contact_disc_convex(
 @kernel
 def _sweep_edge(
     radius: float, edge: EdgeRecord, dx: float, dy: float, vx: float, vy: float, margin: float
-) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y) for the edge that the disc meets, if any."""
+) -> tuple[float, float, float, bool]:
+    """Return (time, normal_x, normal_y, is_corner) for the edge that the disc meets, if any."""
     # The face's own axes: across it toward the region, and along it, to the left of that.
     across_x = -edge.normal_x
     across_y = -edge.normal_y
@@ -110,7 +110,9 @@ def _sweep_edge(
         along_x * vx + along_y * vy,
         margin,
     )
-    return time, across * across_x + along * along_x, across * across_y + along * along_y
+    normal_x = across * across_x + along * along_x
+    normal_y = across * across_y + along * along_y
+    return time, normal_x, normal_y, along != 0.0
 
 
 @kernel
@@ -167,13 +169,22 @@ def sweep_disc_convex(
             return 0.0, normal_x, normal_y
         # The disc reaches every face's line but not the region: it is beyond a corner.
         last, _ = farthest_edge(edges, first, count, dx, dy)
-    elif sinks >= parts and sinks > enter:
-        # It has passed before it overlaps the region by more than the margin.
-        return NO_IMPACT
-    time, normal_x, normal_y = _sweep_edge(radius, edges[last], dx, dy, vx, vy, margin_x + margin_y)
+    time, normal_x, normal_y, is_corner = _sweep_edge(
+        radius, edges[last], dx, dy, vx, vy, margin_x + margin_y
+    )
     if time > duration:
         return NO_IMPACT
+    if is_corner and sinks >= parts and sinks > enter >= 0.0:
+        # It passes before it overlaps the region by more than the margin.
+        return NO_IMPACT
     return time, normal_x, normal_y
+
+
+@kernel
+def _turn(one: EdgeRecord, other: EdgeRecord) -> float:
+    """Return the sine of the angle from one edge's normal to another's, counterclockwise."""
+    sine: float = one.normal_x * other.normal_y - one.normal_y * other.normal_x
+    return sine
 
 
 @kernel
@@ -188,35 +199,31 @@ def _corner_normal(
     margin_x: float,
     margin_y: float,
     time: float,
-) -> tuple[float, float]:
-    """Return the outward normal at which a point meets a region at a time.
+) -> tuple[float, float, bool]:
+    """Return (x, y, is_corner): the outward normal at which a point meets a region at a time.
 
     Of a face it is the face's. Of a corner it is what a small disc meets that flies at the corner:
     against its motion, but no further turned than the normals of the corner's edges.
     """
     x, y, _ = unit_vector(vx, vy)
-    has_right, has_left = False, False
-    right_x, right_y, left_x, left_y = x, y, x, y
+    # Of the edges that are met, with normals within a right angle of (x, y), the nearest on either
+    # side.
+    right, left, met = -1, -1, 0
     for index in range(first, first + count):
         edge = edges[index]
         _, sinks, _ = _region_times(0.0, edge, dx, dy, vx, vy, margin_x, margin_y)
         if sinks < time:
             continue
-        # All of these are within a right angle of (x, y). On either side, the nearest counts.
+        met += 1
         turn = x * edge.normal_y - y * edge.normal_x
-        if turn == 0.0:
-            return edge.normal_x, edge.normal_y
-        if turn < 0.0 and (
-            not has_right or right_x * edge.normal_y - right_y * edge.normal_x > 0.0
-        ):
-            right_x, right_y, has_right = edge.normal_x, edge.normal_y, True
-        if turn > 0.0 and (not has_left or left_x * edge.normal_y - left_y * edge.normal_x < 0.0):
-            left_x, left_y, has_left = edge.normal_x, edge.normal_y, True
-    if has_right and has_left:
-        return x, y
-    if has_left:
-        return left_x, left_y
-    return right_x, right_y
+        if turn <= 0.0 and (right < 0 or _turn(edges[right], edge) > 0.0):
+            right = index
+        if turn >= 0.0 and (left < 0 or _turn(edges[left], edge) < 0.0):
+            left = index
+    if right >= 0 and left >= 0 and right != left:
+        return x, y, True
+    edge = edges[max(right, left)]
+    return edge.normal_x, edge.normal_y, met > 1
 
 
 @kernel
@@ -234,8 +241,8 @@ def sweep_point_convex(
 ) -> tuple[float, float, float]:
     """Return what `sweep_disc_convex` returns, for a disc of radius 0.
 
-    It enters through a corner, too, and one that only grazes a corner misses: so the time in the
-    region decides, not where it meets the boundary.
+    It enters through a corner, too, and one that only grazes a corner misses: there, the time in
+    the region decides.
     """
     time, sinks, parts = -1.0, -1.0, math.inf
     for index in range(first, first + count):
@@ -250,9 +257,11 @@ def sweep_point_convex(
             0.0, edges, first, count, dx, dy, margin_x, margin_y
         )
         return 0.0, normal_x, normal_y
-    if sinks >= parts or time > duration:
+    if time >= parts or time > duration:
         return NO_IMPACT
-    normal_x, normal_y = _corner_normal(
+    normal_x, normal_y, is_corner = _corner_normal(
         edges, first, count, dx, dy, vx, vy, margin_x, margin_y, time
     )
+    if is_corner and sinks >= parts:
+        return NO_IMPACT
     return time, -normal_x, -normal_y

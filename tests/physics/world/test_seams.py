@@ -21,6 +21,7 @@ from arkanoid.physics import (
     World,
 )
 
+UNIT_ROUNDOFF = 2.0**-53
 Rng = np.random.Generator
 KINDS = ("disc", "box", "rectangle", "turned", "polygon", "keel")
 FORMS = ("box", "rectangle", "quarter turn", "convex", "vertices")
@@ -117,10 +118,15 @@ def check_slides(seed: int, kind: str, is_level: bool, count: int) -> None:
         place = frame.turn(x + start, y + height / 2 + drop(shape, frame))
         restitution = float(rng.choice([0, 1]))
         world = World([*row, Body(shape, place, frame.turn(speed, 0), 1, restitution)])
-        before = world.velocities[-1].tolist()
+        before = world.velocities[-1]
         steps = int(rng.choice([1, 60]))
-        assert len(world.step(7 * width / abs(speed) / steps, steps=steps)) == 0
-        assert world.velocities[-1].tolist() == before
+        hits = world.step(7 * width / abs(speed) / steps, steps=steps)
+        turn = math.dist(world.velocities[-1], before) / abs(speed)
+        if is_level:
+            assert (len(hits), turn) == (0, 0)
+        # A slanted side made of corners is turned by their rounding over its length; two sides,
+        # and a bounce doubles it.
+        assert turn <= 16 * UNIT_ROUNDOFF * (abs(x) + abs(y) + 8 * width) / width
 
 
 @pytest.mark.parametrize("is_level", [True, False])
@@ -150,6 +156,41 @@ def test_a_box_rides_on_a_row_of_tiles_that_moves() -> None:
             before = world.velocities[-1].tolist()
             assert len(world.step(1 / 37, steps=90)) == 0
             assert world.velocities[-1].tolist() == before
+
+
+def check_landings(seed: int, kind: str, count: int) -> None:
+    """Let shapes come down on a row of tiles and on one wall, often almost along it or at seams."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        frame, form = random_frame(rng, rng.random() < 0.5), str(rng.choice(FORMS))
+        width, height = decimal(rng, 0.3, 2), decimal(rng, 0.2, 1)
+        x, y = decimal(rng, -20, 20), decimal(rng, -20, 20)
+        shape, speed = random_mover(rng, kind, frame.angle), decimal(rng, 0.5, 5)
+        slope, gap = 10 ** rng.uniform(-12, 0.3), float(rng.choice([0.0, 10 ** rng.uniform(-16, 0)]))
+        start = rng.uniform(2, 4) * width
+        if rng.random() < 0.3 and gap / slope < width:
+            start = 2.5 * width - gap / slope + float(rng.choice([0, 1e-9, -1e-9, 1e-12, -1e-12]))
+        place = frame.turn(x + start, y + height / 2 + drop(shape, frame) + gap)
+        body = Body(shape, place, frame.turn(speed, -speed * slope), 1)
+        row = [frame.block(form, x + i * width, y, width, height) for i in range(12)]
+        wall = frame.block(form, x + 5.5 * width, y, 12 * width, height)
+        tiles, whole = World([*row, body]), World([wall, body])
+        for world in (tiles, whole):
+            world.step(4 * width / speed)
+        turn = math.dist(tiles.velocities[-1], whole.velocities[-1]) / speed
+        assert turn <= 16 * UNIT_ROUNDOFF * (abs(x) + abs(y) + 12 * width) / width
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_lands_on_tiles_bounces_as_off_one_wall(kind: str) -> None:
+    check_landings(3, kind, 200)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(30, 34))
+def test_what_lands_on_tiles_bounces_as_off_one_wall_at_length(kind: str, seed: int) -> None:
+    check_landings(seed, kind, 3000)
 
 
 # A platformer: gravity, walking, jumping, walls.
