@@ -27,9 +27,9 @@ NO_APPROACH = 1e-15
 # each round reduces the overlaps by a constant factor; where there is no room, this limit ends it.
 RELAX_ROUNDS = 64
 
-# A fraction of the coordinates of where two bodies meet. Points closer than this count as one:
-# which of two static bodies is met first there is a matter of rounding.
-SAME_POINT = 1e-15
+# A fraction of a body's speed. Which of two static bodies it meets first is a matter of rounding if
+# it touches both; they are compared if it approaches them at least this fast.
+FLATTEST = 1e-9
 
 # Lengths and speeds. The engine multiplies up to two of them, and the squares of larger ones are no
 # numbers.

@@ -48,4 +48,9 @@ def sweep_disc_face(
         # in a motion nearly parallel to the face, and the disc would sink in behind the corner.
         # It meets the corner practically where it is closest, and there the normal is the face's.
         return closing / (speed * speed + slide * slide), 1.0, 0.0
+    touches_both = time < math.inf and (height - radius) + speed * time > -margin
+    if touches_both and margin > 0.0 and speed > across * speed + along * slide:
+        # It touches face and corner. The slower axis changes less: so a disc that comes down almost
+        # along a row of boxes does not meet the corner of a box that is higher by a rounding.
+        return time, 1.0, 0.0
     return time, across, along

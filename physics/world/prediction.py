@@ -8,10 +8,10 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
-from ..pairs.touching import touch_margins
+from ..pairs.touching import margin_along, touch_margins
 from ..pairs.touching_point import shared_stretch
 from ..shapes.records import Edges, ShapeRecord
-from ..tolerances import NO_APPROACH, SAME_POINT
+from ..tolerances import FLATTEST, NO_APPROACH, TOUCH
 from .clock_time import elapsed, later
 from .grid import find_near, time_to_cross
 from .records import CROSS_X, CROSS_Y, MEET, NOTHING, PlanRecord, TraitRecord
@@ -109,6 +109,33 @@ def _facing_length(
 
 
 @kernel
+def _is_at_once(
+    world: WorldView,
+    plan: PlanRecord,
+    trait: TraitRecord,
+    time: float,
+    best: float,
+    ux: float,
+    uy: float,
+    normal_x: float,
+    normal_y: float,
+    margin: float,
+) -> bool:
+    """Return whether a body is met when the planned partner is, as far as rounding can tell.
+
+    So it is if the one that is met later, of two static bodies, is then touched already. It
+    approaches with (ux, uy).
+    """
+    if time == best:
+        return True
+    if trait.slot >= 0 or traits_of(world)[plan.partner].slot >= 0:
+        return False
+    if time < best:
+        normal_x, normal_y = plan.normal_x, plan.normal_y
+    return bool(abs(time - best) * -(ux * normal_x + uy * normal_y) <= margin)
+
+
+@kernel
 def _is_straighter(
     world: WorldView,
     plan: PlanRecord,
@@ -177,7 +204,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
         slack = 0.0
         if trait.slot < 0 and ux * ux + uy * uy > 0.0:
             coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-            slack = SAME_POINT * coordinates / math.sqrt(ux * ux + uy * uy)
+            slack = TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy))
         if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
             continue
         if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
@@ -205,14 +232,16 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             speed = abs(vx) + abs(vy) + abs(their_vx) + abs(their_vy)
             if not _approaches(ux, uy, normal_x, normal_y, speed):
                 continue
-        if plan.kind == MEET and abs(time - best) <= slack:
+        margin = margin_along(normal_x, normal_y, margin_x, margin_y)
+        if plan.kind == MEET and _is_at_once(
+            world, plan, trait, time, best, ux, uy, normal_x, normal_y, margin
+        ):
             is_first = _is_straighter(
                 world, plan, body, other, now, now_low, best, normal_x, normal_y
             )
         else:
-            # At the same time, a meeting comes before a crossing. Of two meetings, the order of the
-            # bodies decides, not the order of the grid.
-            is_first = time < best or plan.kind != MEET or other < plan.partner
+            # At the same time, a meeting comes before a crossing.
+            is_first = time < best or (time == best and plan.kind != MEET)
         if is_first:
             best = time
             plan.kind = MEET

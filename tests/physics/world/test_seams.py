@@ -166,7 +166,10 @@ def check_landings(seed: int, kind: str, count: int) -> None:
         width, height = decimal(rng, 0.3, 2), decimal(rng, 0.2, 1)
         x, y = decimal(rng, -20, 20), decimal(rng, -20, 20)
         shape, speed = random_mover(rng, kind, frame.angle), decimal(rng, 0.5, 5)
-        slope, gap = 10 ** rng.uniform(-12, 0.3), float(rng.choice([0.0, 10 ** rng.uniform(-16, 0)]))
+        slope, gap = (
+            10 ** rng.uniform(-12, 0.3),
+            float(rng.choice([0.0, 10 ** rng.uniform(-16, 0)])),
+        )
         start = rng.uniform(2, 4) * width
         if rng.random() < 0.3 and gap / slope < width:
             start = 2.5 * width - gap / slope + float(rng.choice([0, 1e-9, -1e-9, 1e-12, -1e-12]))
