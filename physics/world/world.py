@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, not_negative, vector, whole
+from ..arguments import finite, integer, inverse_mass, near, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..drawing import draw_scene
 from ..errors import HitLimitWarning
@@ -219,12 +219,12 @@ class World:
     @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that contain a point."""
-        return self._overlapping(Particle(0.0), vector("point", point), mask)
+        return self._overlapping(Particle(0.0), near("point", point), mask)
 
     @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that overlap a box, given by two of its corners."""
-        low, high = vector("lower", lower), vector("upper", upper)
+        low, high = near("lower", lower), near("upper", upper)
         if not (low[0] < high[0] and low[1] < high[1]):
             raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
         middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
@@ -236,9 +236,14 @@ class World:
     def query_ray(
         self, start: Any, end: Any, radius: float = 0.0, mask: int = ALL
     ) -> RayHit | None:
-        """Return what a ray from start to end, or a disc cast along it, meets first; or None."""
-        x, y = vector("start", start)
-        way = np.subtract(vector("end", end), (x, y))
+        """Return what a ray from start to end, or a disc cast along it, meets first; or None.
+
+        A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
+        a side does not. At a corner the normal points against the ray, but is turned no further
+        than the normals of the corner's sides.
+        """
+        x, y = near("start", start)
+        way = np.subtract(near("end", end), (x, y))
         built = self.built()
         index, fraction, normal_x, normal_y = find_first(
             built.states[0],
