@@ -1,5 +1,7 @@
 """The documentation's code prints what the pages say, and its figures are up to date."""
 
+import importlib
+import itertools
 import re
 from collections import Counter
 from pathlib import Path
@@ -51,6 +53,27 @@ def test_the_film_of_the_platformer_is_what_it_draws(tmp_path: Path) -> None:
     run_python(EXAMPLES / "platformer.py", cwd=tmp_path)
     old, new = (numbers(folder / "platformer.svg") for folder in (DOCS / "pictures", tmp_path))
     np.testing.assert_allclose(new, old, rtol=0, atol=0.02)  # hundredths of a tile are drawn
+
+
+@pytest.mark.parametrize("height", range(0, 12, 2))
+def test_the_hero_of_the_platformer_walks_over_every_seam(
+    height: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """He stopped dead where two tiles met if rounding let him overlap the next one by a digit."""
+    monkeypatch.syspath_prepend(EXAMPLES)
+    platformer = importlib.import_module("platformer")
+    floor = "\n.P......................\n########################\n"
+    monkeypatch.setattr(platformer, "LEVEL", floor + "#.......................\n" * height)
+    for tall, speed in itertools.product((0.2, 0.3, 0.7, 0.9), (1.0, 3.3, 4.0)):
+        monkeypatch.setitem(platformer.MARKS, "P", ("", 0.6, tall))
+        monkeypatch.setattr(platformer, "WALK", speed)
+        game = platformer.Game()
+        game.world.place(game.hero, position=(1.0, height + 0.5 + 0.5 * tall))
+        for tick in range(1, 240):
+            game.tick("right")
+            x, y = game.world.body(game.hero).position
+            assert x == pytest.approx(1.0 + speed * tick * platformer.TICK, abs=1e-9)
+            assert y == pytest.approx(height + 0.5 + 0.5 * tall, abs=1e-9)
 
 
 def test_nobody_in_the_crowd_overlaps_and_all_are_drawn(tmp_path: Path) -> None:
