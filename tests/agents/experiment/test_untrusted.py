@@ -34,13 +34,14 @@ from helpers.runs import packaged_copy
 from stable_baselines3 import PPO
 
 # Every command that reads a model, with little to play.
+SHORT = ["--env.max_decisions", "20"]
 QUICK = ["--evaluation.episodes", "1", "--evaluation.suites", '["games"]']
-QUICK += ["--evaluation.baselines", "[]", "--env.max_decisions", "20"]
+QUICK += ["--evaluation.baselines", "[]", *SHORT]
 COMMANDS = {
-    "evaluate": ["evaluate", "RUN", "--json"],
-    "film": ["film", "RUN", "OUT.gif", "--seconds", "0.2"],
-    "watch": ["watch", "RUN"],
-    "report": ["report", "RUN", "--out", "OUT.html"],
+    "evaluate": ["evaluate", "RUN", "--json", *QUICK],
+    "film": ["film", "RUN", "OUT.gif", "--seconds", "0.2", *SHORT],
+    "watch": ["watch", "RUN", *SHORT],
+    "report": ["report", "RUN", "--out", "OUT.html", *QUICK],
 }
 # Every command that reads a run's settings.
 READERS = {
@@ -79,10 +80,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunFolder:
 
 def words(command: list[str], run: RunFolder) -> list[str]:
     out = str(run.path.parent / "out")
-    return [
-        word.replace("RUN", str(run.path)).replace("OUT", out)
-        for word in (*command, *(QUICK if command[0] not in ("train", "reproduce") else []))
-    ]
+    return [word.replace("RUN", str(run.path)).replace("OUT", out) for word in command]
 
 
 def change(path: Path, **entries: bytes) -> None:
