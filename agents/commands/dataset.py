@@ -2,13 +2,13 @@
 
 import argparse
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...envs.checks import counted
 from ...envs.config import SEEN
 from ..experiment.datasets import Episode, Written, check_new, write_dataset
 from ..experiment.errors import SettingsError
+from ..experiment.packaged import find_agent, packaged_agents
 from ..experiment.seeds import Purpose, spread_seeds
 from .arguments import LEVELS, PLAYED, add_trust, check_settings, whole
 from .train import DEFAULT_CONFIG
@@ -23,7 +23,8 @@ DEFAULT_DECISIONS = 2000
 _LOOK = "env."
 
 _EPILOG = """\
-PLAYER is a baseline (planner, ball-follower, ...), a run or model file, or *.replay files.
+PLAYER is a baseline (planner, ball-follower, ...), a packaged agent (lite, full), a run or model
+file, or *.replay files.
 
   arkanoid dataset arkanoid/planner-v0 planner --config lite --level named
   arkanoid dataset arkanoid/lite-v0 runs/lite-seed0 --env.observation rgb
@@ -76,9 +77,11 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         )
     elif players[0] in BASELINES:
         written = _write_baseline(arguments, overrides)
-    elif not Path(players[0]).exists():
+    elif not find_agent(players[0]).exists():
+        agents = ", ".join(packaged_agents())
         raise SettingsError(
-            f"{players[0]}: neither a baseline ({', '.join(BASELINES)}) nor a file or folder"
+            f"{players[0]}: neither a baseline ({', '.join(BASELINES)}) nor a packaged agent "
+            f"({agents}), a file or a folder"
         )
     else:
         written = _write_model(arguments, overrides)
