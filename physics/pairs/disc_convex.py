@@ -116,7 +116,7 @@ def _sweep_edge(
 
 
 @kernel
-def _region_times(
+def _edge_times(
     radius: float,
     edge: EdgeRecord,
     dx: float,
@@ -130,6 +130,38 @@ def _region_times(
     margin = margin_along(edge.normal_x, edge.normal_y, margin_x, margin_y)
     closing = closing_speed(-edge.normal_x, -edge.normal_y, vx, vy, margin)
     return axis_times(separation_from_edge(edge, dx, dy) - radius, closing, margin)
+
+
+@kernel
+def _region_times(
+    radius: float,
+    edges: Edges,
+    first: int,
+    count: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[float, int, float, float]:
+    """Return (touches, last, sinks, parts) of a disc and the lines of all edges together.
+
+    ``last`` is the edge whose line is touched last; it is -1 if the disc overlaps all of them.
+    """
+    touches, sinks, parts = -1.0, -1.0, math.inf
+    last = -1
+    for index in range(first, first + count):
+        edge_touches, edge_sinks, edge_parts = _edge_times(
+            radius, edges[index], dx, dy, vx, vy, margin_x, margin_y
+        )
+        if edge_touches == math.inf:
+            return math.inf, index, math.inf, -math.inf
+        if edge_touches > touches:
+            touches, last = edge_touches, index
+        sinks = max(sinks, edge_sinks)
+        parts = min(parts, edge_parts)
+    return touches, last, sinks, parts
 
 
 @kernel
@@ -147,19 +179,10 @@ def sweep_disc_convex(
     margin_y: float,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y); the region's body starts at (dx, dy), moves (vx, vy)."""
-    enter, sinks, parts = -1.0, -1.0, math.inf
-    last = -1
-    for index in range(first, first + count):
-        touches, edge_sinks, edge_parts = _region_times(
-            radius, edges[index], dx, dy, vx, vy, margin_x, margin_y
-        )
-        if touches == math.inf:
-            return NO_IMPACT
-        if touches > enter:
-            enter, last = touches, index
-        sinks = max(sinks, edge_sinks)
-        parts = min(parts, edge_parts)
-    if enter > duration:
+    enter, last, sinks, parts = _region_times(
+        radius, edges, first, count, dx, dy, vx, vy, margin_x, margin_y
+    )
+    if enter == math.inf or enter > duration:
         return NO_IMPACT
     if last < 0:
         found, normal_x, normal_y, _, _, _ = contact_disc_convex(
@@ -211,7 +234,7 @@ def _corner_normal(
     right, left, met = -1, -1, 0
     for index in range(first, first + count):
         edge = edges[index]
-        _, sinks, _ = _region_times(0.0, edge, dx, dy, vx, vy, margin_x, margin_y)
+        _, sinks, _ = _edge_times(0.0, edge, dx, dy, vx, vy, margin_x, margin_y)
         if sinks < time:
             continue
         met += 1
@@ -244,14 +267,9 @@ def sweep_point_convex(
     It enters through a corner, too, and one that only grazes a corner misses: there, the time in
     the region decides.
     """
-    time, sinks, parts = -1.0, -1.0, math.inf
-    for index in range(first, first + count):
-        edge_touches, edge_sinks, edge_parts = _region_times(
-            0.0, edges[index], dx, dy, vx, vy, margin_x, margin_y
-        )
-        time = max(time, edge_touches)
-        sinks = max(sinks, edge_sinks)
-        parts = min(parts, edge_parts)
+    time, _, sinks, parts = _region_times(
+        0.0, edges, first, count, dx, dy, vx, vy, margin_x, margin_y
+    )
     if time < 0.0:
         _, normal_x, normal_y, _, _, _ = contact_disc_convex(
             0.0, edges, first, count, dx, dy, margin_x, margin_y
