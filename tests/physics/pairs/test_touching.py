@@ -24,16 +24,7 @@ from arkanoid.physics.pairs.table import impact_between, overlap_between
 from arkanoid.physics.pairs.touching import touch_margins
 from arkanoid.physics.shapes.table import shape_table
 from arkanoid.physics.tolerances import TOUCH
-
-SHAPES: tuple[Collider, ...] = (
-    Particle(0.5),
-    HalfPlane((1, 2), 0.25),
-    AxisAlignedHalfPlane("-y", 0.5),
-    AxisAlignedRectangle(2, 1),
-    Rectangle(2, 1, 0.5),
-    Convex([(0, 0), (2, 0), (1, 1.5)]),
-    Convex([(1, 1), (-1, 1), (-1, 0), (1, 0)], [3], 0.25),
-)
+from helpers.bodies import COLLIDERS
 
 
 @pytest.mark.parametrize("far", [1.0, 1e3, 1e9])
@@ -42,10 +33,10 @@ def test_relaxed_bodies_are_apart(far: float) -> None:
     rng = np.random.default_rng(1)
     moved = 0
     for _ in range(1500):
-        first, second = rng.choice(len(SHAPES), 2)
+        first, second = rng.choice(len(COLLIDERS), 2)
         place = rng.uniform(-far, far, 2)
-        a = Body(SHAPES[first], place, mass=float(rng.uniform(0.1, 9)))
-        b = Body(SHAPES[second], place + rng.normal(size=2), mass=float(rng.uniform(0.1, 9)))
+        a = Body(COLLIDERS[first], place, mass=float(rng.uniform(0.1, 9)))
+        b = Body(COLLIDERS[second], place + rng.normal(size=2), mass=float(rng.uniform(0.1, 9)))
         overlap = contact(a, b)
         if overlap is None or overlap.depth == math.inf:
             continue
@@ -95,15 +86,15 @@ def test_within_the_margin_two_bodies_touch_and_beyond_it_they_overlap(
     assert impact.time == 0
 
 
-@pytest.mark.parametrize("first", range(len(SHAPES)))
+@pytest.mark.parametrize("first", range(len(COLLIDERS)))
 def test_an_impact_begins_an_overlap_and_without_one_there_is_none(first: int) -> None:
     """For shapes in one-decimal numbers, which meet corner to corner, slide and graze."""
     rng = np.random.default_rng(first)
-    shapes, edges = shape_table(SHAPES)
+    shapes, edges = shape_table(COLLIDERS)
     times = np.concatenate([np.geomspace(1e-6, 20, 60), np.linspace(0, 20, 101)])
     impacts = 0
     for _ in range(200):
-        second = int(rng.integers(len(SHAPES)))
+        second = int(rng.integers(len(COLLIDERS)))
         d, v = rng.integers(-40, 41, 2) / 10, rng.integers(-3, 4, 2) / 2
         margins = touch_margins(shapes, edges, first, second, 0.0, 0.0, *d.tolist())
 
