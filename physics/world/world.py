@@ -223,7 +223,7 @@ class World:
 
     @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
-        """Return the indices of the bodies that overlap a box, given by two of its corners."""
+        """Return the indices of the bodies that overlap a box, from its lower left corner up."""
         low, high = near("lower", lower), near("upper", upper)
         if not (low[0] < high[0] and low[1] < high[1]):
             raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
