@@ -72,6 +72,7 @@ METHODS = {
     "snapshot(), restore(), clone(), spread(), record()": "see [saving](saving.md)",
 }
 
+
 def ids() -> dict[str, str]:
     """Return the ids with what they are: the other ones stand for keywords."""
     others = {}
@@ -82,6 +83,7 @@ def ids() -> dict[str, str]:
         others[name] = f"`{base}` with `{given}`"
     return others | IDS
 
+
 def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
     """Return a table in Markdown."""
     lines = [head, ("---",) * len(head), *rows]
@@ -89,9 +91,11 @@ def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
         f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |" for line in lines
     )
 
+
 def meanings(head: str, entries: dict[str, str]) -> str:
     """Return a table of names and what they mean."""
     return table((head, "meaning"), ((f"`{name}`", text) for name, text in entries.items()))
+
 
 def space(name: str, kind: str, **keywords: Any) -> str:
     """Return an environment's space, as it describes itself."""
@@ -100,6 +104,7 @@ def space(name: str, kind: str, **keywords: Any) -> str:
     env.close()
     return described
 
+
 def action_table() -> str:
     """Return the table of action spaces."""
     rows = (
@@ -107,6 +112,7 @@ def action_table() -> str:
         for name, meaning in ACTIONS.items()
     )
     return table(("`actions`", "space", "meaning"), rows)
+
 
 def observation_table() -> str:
     """Return the table of observation spaces."""
@@ -117,6 +123,7 @@ def observation_table() -> str:
         rows.append((f"`{given}`", OBSERVATIONS[keywords["observation"]], *spaces))
     return table(("keywords", "meaning", *(f"`{name}`" for name in IDS)), rows)
 
+
 def part_table(parts: tuple[Part, ...]) -> str:
     """Return the table of an observation's parts."""
     layout = slices(parts)
@@ -126,9 +133,11 @@ def part_table(parts: tuple[Part, ...]) -> str:
     )
     return table(("part", "slice", "meaning"), rows)
 
+
 def further_parts(parts: tuple[Part, ...]) -> str:
     """Return the parts that only some games have."""
     return "; ".join(f"`{part.name}` ({part.length}), {part.meaning}" for part in parts)
+
 
 def status_table() -> str:
     """Return the table of the status in small pictures."""
@@ -142,6 +151,7 @@ def status_table() -> str:
         for part in STATUS_PARTS
     )
     return table(("part", "line", "units", "meaning"), rows)
+
 
 def keyword_table() -> str:
     """Return the table of keywords."""
@@ -157,6 +167,7 @@ def keyword_table() -> str:
     rows.append(("`render_mode`", "`None`", "`'rgb_array'` (needs no display), `'human'` or None"))
     rows.append(("`render_size`", "`None`", "of frames: height or (height, width); None is 512"))
     return table(("keyword", "default", "meaning"), rows)
+
 
 def page() -> str:
     """Return the page."""
@@ -191,13 +202,13 @@ the Atari games of that name.
 A paddle at the bottom of a field of {rules.FIELD_WIDTH:g} × {rules.FIELD_HEIGHT:g} brick widths
 keeps a ball from falling out, and the ball breaks bricks. The place on the paddle where it lands
 decides its angle. Some bricks hide capsules, which give the paddle powers; enemies come through the
-ceiling and get in the ball's way ([all of them](things.md)). Twelve rounds lead to a boss; after it,
-generated rounds get harder without end ([levels](levels.md)). The rules follow the arcade game of
-1986; the levels and pictures are our own.
+ceiling and get in the ball's way ([all of them](things.md)). Twelve rounds lead to a boss; after
+it, generated rounds get harder without end ([levels](levels.md)). The rules follow the arcade game
+of 1986; the levels and pictures are our own.
 
-A tick is 1/{rules.TICKS_PER_SECOND} s. Collisions are [exact](engine.md): a ball of any speed passes
-through nothing. The same seed and actions give the same game bit for bit, alone or in a batch, on any
-number of threads.
+A tick is 1/{rules.TICKS_PER_SECOND} s. Collisions are [exact](engine.md): a ball of any speed
+passes through nothing. The same seed and actions give the same game bit for bit, alone or in a
+batch, on any number of threads.
 
 ## Action Space
 
@@ -245,8 +256,8 @@ Pictures as `render` shows them, `[stack * channels, height, width]`, or with `c
 `[height, width, stack * channels]`. At a reset the first picture fills the stack.
 
 Pictures with less than 8 pixels per brick width (84 × 84, say) have no score line. The field's
-lowest two rows of cells, below the paddle, show the status instead. A unit is half a brick wide and as
-high as a brick: at 84 × 84, 3 × 3 pixels, and the units begin at row 78 and column 9.
+lowest two rows of cells, below the paddle, show the status instead. A unit is half a brick wide and
+as high as a brick: at 84 × 84, 3 × 3 pixels, and the units begin at row 78 and column 9.
 `arkanoid.envs.draw.status.status_layout(height, width)` returns the pixels of each part.
 
 {status_table()}
@@ -263,9 +274,9 @@ The pictures as `"rgb"` and the numbers as `"vector"`. `layout` has the layouts 
 
 Each lost life costs `life_penalty`. Nothing is paid for touching the ball or for staying alive.
 
-A round is cleared when its last breakable brick is broken and the boss, if there is one, is beaten. It
-is also cleared when the paddle leaves through the gate that the capsule *break* opens: `'progress'` and
-`'sparse'` pay 1 for it, however many bricks still stand.
+A round is cleared when its last breakable brick is broken and the boss, if there is one, is beaten.
+It is also cleared when the paddle leaves through the gate that the capsule *break* opens:
+`'progress'` and `'sparse'` pay 1 for it, however many bricks still stand.
 
 ## Points
 
@@ -307,15 +318,15 @@ gone. Each serve and each damage start this clock anew. Observations show it, an
 `max_decisions`.
 
 After a cut, training should count the value of the last observation, as `arkanoid train` does.
-Otherwise it would pay to keep the lives until `max_decisions`. If `life_penalty` exceeds what a life
-earns, extra lives are a loss.
+Otherwise it would pay to keep the lives until `max_decisions`. If `life_penalty` exceeds what a
+life earns, extra lives are a loss.
 
 Before the first reset, a step, a frame or masks raise `gymnasium.error.ResetNeeded`. So does a step
 after an episode's end, unless the vector environment resets by itself (`autoreset_mode`).
 
 Where Gymnasium's own `TimeLimit` truncates (`gym.make(..., max_episode_steps=n)`),
-`info["truncation"]` is 0; `max_decisions=n` does the same and says so. `env.spec.max_episode_steps` is
-`max_decisions`.
+`info["truncation"]` is 0; `max_decisions=n` does the same and says so. `env.spec.max_episode_steps`
+is `max_decisions`.
 
 ## Information
 
@@ -346,11 +357,13 @@ copy.
 - v0: the first version.
 """
 
+
 def main() -> None:
     """Write the page, or write it to another path."""
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGE
     path.write_text(page(), encoding="utf-8")
     print(f"{path}: arkanoid {arkanoid.__version__}")
+
 
 if __name__ == "__main__":
     main()
