@@ -39,6 +39,7 @@ ORDER = {
         registration
         tensor_vector_env
         arkanoid_env vector_env
+        browser
         tensors
         play
         interface emulator masks

@@ -1,0 +1,325 @@
+// The game in JavaScript: every rule, drawing and observation is a kernel of the module.
+
+import { Machine } from "./machine.js";
+
+/**
+ * @typedef {object} Start how episodes begin from now on; nothing given changes nothing
+ * @property {number | bigint} [seed] of the random numbers: forgets earlier options
+ * @property {string | number} [level] the first round: a named level, or the number of a round
+ * @property {string} [bricks] the first round: the letters of its cells, row by row from the top
+ * @property {boolean} [boss] with bricks: whether the boss is there
+ * @property {number | bigint} [levelSeed] the first round: the one that the generator makes
+ * @property {boolean} [repeat] with levelSeed: whether all further rounds are this level, too
+ * @property {number | null} [difficulty] of all generated levels; null: as the game says
+ */
+
+/**
+ * Compile the module.
+ * @param {BufferSource | WebAssembly.Module} code of the module
+ * @param {object} manifest
+ * @returns {Promise<Arkanoid>}
+ */
+export async function loadArkanoid(code, manifest) {
+  const module = code instanceof WebAssembly.Module ? code : await WebAssembly.compile(code);
+  return new Arkanoid(module, manifest);
+}
+
+/** The compiled module and its manifest. */
+export class Arkanoid {
+  constructor(module, manifest) {
+    this.module = module;
+    this.manifest = manifest;
+  }
+
+  /** @returns {Promise<Machine>} a machine of its own */
+  async machine() {
+    return new Machine(await WebAssembly.instantiate(this.module, {}), this.manifest);
+  }
+
+  /**
+   * @param {string} name of one of the manifest's games
+   * @returns {Promise<Game>} the game, which waits for `reset`
+   */
+  async open(name) {
+    const image = this.manifest.games[name];
+    if (!image) {
+      throw new RangeError(`no game ${name}: there are ${Object.keys(this.manifest.games)}`);
+    }
+    return new Game(await this.machine(), name, image);
+  }
+
+  /** @returns {Promise<Board>} an empty drawing board for a level */
+  async board() {
+    return new Board(await this.machine());
+  }
+}
+
+/** Decode base64, as the manifest holds bytes. */
+export function fromBase64(text) {
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+}
+
+/** A game with one world. */
+export class Game {
+  constructor(machine, name, image) {
+    this.machine = machine;
+    this.name = name;
+    this.config = image.config;
+    this.commands = image.commands; // velocity and fire of each action; null: actions are these
+    this.meanings = image.meanings; // of each action
+    this.levels = image.levels;
+    this.parts = image.parts; // of observations: first and last place (exclusive) by name
+    this.shapes = image.shapes; // of observations
+    this._image = image;
+    const start = machine.reserve(image.length);
+    if (start !== machine.manifest.free) throw new Error("a game lies at the memory's beginning");
+    const content = fromBase64(image.image);
+    machine.bytes(start, content.length).set(content);
+    const at = image.addresses;
+    this.record = machine.record("Game", at.game);
+    this.world = machine.record("World", at.world);
+    this.outcome = machine.record("Outcome", at.outcome);
+    this._fresh = this._bytes("World", at.world).slice();
+    this._run("forget");
+    this._pictures = new Map();
+  }
+
+  /**
+   * Begin a game; or its next life, with episodic_life and without options.
+   * @param {Start} options
+   */
+  reset(options = {}) {
+    const { state } = this.machine.manifest;
+    const { seed, ...others } = options;
+    if (seed === undefined && this.world.random === 0n) {
+      throw new Error("the first reset needs a seed");
+    }
+    const fields = this._start(others);
+    if (seed !== undefined) {
+      this._bytes("World", this._image.addresses.world).set(this._fresh);
+      this._run("forget");
+      this.record.seed = BigInt.asUintN(64, BigInt(seed));
+      this._run("seed");
+    }
+    for (const [name, value] of Object.entries(fields)) this.world[name] = value;
+    if (seed !== undefined || Object.keys(fields).length) this.world.done = state.GAME_OVER;
+    this._run("reset");
+  }
+
+  /** Let the next game begin like a recorded one: see `Replay.start`. */
+  resetAs(start) {
+    this.world.random = start.random;
+    for (const [name, value] of Object.entries(start.fields)) this.world[name] = value;
+    this.world.start_kind = this._kinds(start.layout);
+    this.world.done = this.machine.manifest.state.GAME_OVER;
+    this._run("reset");
+  }
+
+  /**
+   * Play a decision: `config.frame_skip` ticks. A game that is over stays as it is.
+   * @param {number | [number, number]} action its number; or velocity in [-1, 1], and fire, which
+   *   every game takes
+   */
+  step(action) {
+    if (typeof action === "number") {
+      if (!Number.isInteger(action) || !(action >= 0 && action < this.commands?.length)) {
+        throw new RangeError(`${this.name} has no action ${action}`);
+      }
+      this.machine.view.setBigInt64(this.record.arrays.actions, BigInt(action), true);
+      this._run("step");
+      return;
+    }
+    const [velocity, fire] = action;
+    if (!(Number.isFinite(velocity) && Number.isFinite(Number(fire)))) {
+      throw new RangeError(`velocity and fire must be numbers; got ${action}`);
+    }
+    this.record.velocity = [velocity, Number(fire)];
+    this._run("steer");
+  }
+
+  /** Whether the episode is over. */
+  get over() {
+    return this.world.done !== 0;
+  }
+
+  /** What the environment's `info` says, by its keys. */
+  get info() {
+    const { infos } = this.machine.manifest;
+    const keys = Object.entries(infos);
+    return Object.fromEntries(keys.map(([key, { field }]) => [key, this.outcome[field]]));
+  }
+
+  /** @returns {Float32Array} the game as agents see it, in the order of `parts.vector` */
+  vector() {
+    this._run("vector");
+    const [length] = this.shapes.vector;
+    return this.machine.array("f4", this._image.addresses.vector, length);
+  }
+
+  /** @returns {Float32Array} planes over the cells of the field, of `shapes.grid` */
+  grid() {
+    this._run("grid");
+    const length = this.shapes.grid.reduce((one, other) => one * other, 1);
+    return this.machine.array("f4", this._image.addresses.grid, length);
+  }
+
+  /**
+   * Draw the game. Only what has changed since the last picture of this size is drawn.
+   * @param {number} width in pixels
+   * @param {number} height in pixels
+   * @param {1 | 3 | 4} channels brightness; red, green, blue; the same and opacity, for canvases
+   * @returns {Uint8ClampedArray} row by row; it is of use until the next call
+   */
+  draw(width, height, channels = 4) {
+    const key = `${width} ${height} ${channels}`;
+    if (!this._pictures.has(key)) this._pictures.set(key, this._picture(width, height, channels));
+    const { $address, memory } = this._pictures.get(key);
+    this.machine.kernels.draw(0, $address);
+    return new Uint8ClampedArray(this.machine.memory.buffer, memory, width * height * channels);
+  }
+
+  /** @returns {Uint8Array} the state */
+  save() {
+    const { world, outcome } = this._image.addresses;
+    const parts = [this._bytes("World", world), this._bytes("Outcome", outcome)];
+    const saved = new Uint8Array(parts[0].length + parts[1].length);
+    saved.set(parts[0]);
+    saved.set(parts[1], parts[0].length);
+    return saved;
+  }
+
+  /** Go on from a state that this or the same game has saved. */
+  restore(saved) {
+    const { world, outcome } = this._image.addresses;
+    const parts = [this._bytes("World", world), this._bytes("Outcome", outcome)];
+    if (saved.length !== parts[0].length + parts[1].length) {
+      throw new RangeError("these bytes are no state of a game");
+    }
+    parts[0].set(saved.subarray(0, parts[0].length));
+    parts[1].set(saved.subarray(parts[0].length));
+    this._run("forget");
+  }
+
+  /** Take the state into the checksum of the states so far, and return it; see `replay.js`. */
+  note() {
+    this._run("note");
+    return this.record.checksum;
+  }
+
+  _run(kernel) {
+    this.machine.kernels[kernel](0, this._image.addresses.game);
+  }
+
+  _bytes(name, address) {
+    return this.machine.bytes(address, this.machine.manifest.records[name].length);
+  }
+
+  _kinds(bricks) {
+    return kindsOf(bricks, this.machine.manifest.rules);
+  }
+
+  /** Return the fields of `World` that options set, as `envs/levels/starts.py` does. */
+  _start({ level, bricks, boss = false, levelSeed, repeat = false, difficulty }) {
+    const { state, levels } = this.machine.manifest;
+    const fields = {};
+    const named = typeof level === "string" ? this.levels.names.indexOf(level) : -1;
+    if (typeof level === "number" || named >= 0) {
+      fields.start = state.AS_CONFIGURED;
+      fields.start_round = named >= 0 ? named + 1 : level;
+    } else if (level !== undefined) {
+      const found = levels.find(({ name }) => name === level);
+      if (!found) throw new RangeError(`no level ${level}`);
+      ({ bricks, boss } = found);
+    }
+    if (bricks !== undefined) {
+      if (boss && !this.config.enemies) throw new RangeError(`${this.name} has no boss`);
+      fields.start = state.GIVEN_LAYOUT;
+      fields.start_round = 1;
+      fields.start_kind = this._kinds(bricks);
+      fields.start_boss = Number(boss);
+    } else if (levelSeed !== undefined) {
+      fields.start = repeat ? state.REPEATED_SEED : state.GIVEN_SEED;
+      fields.start_round = 1;
+      fields.start_seed = levelSeed;
+      fields.start_boss = 0;
+    }
+    if (difficulty !== undefined) {
+      fields.start_difficulty = difficulty ?? this.machine.manifest.start.start_difficulty;
+    }
+    return fields;
+  }
+
+  /** Return the record of a new picture. */
+  _picture(width, height, channels) {
+    const { machine } = this;
+    const { records } = machine.manifest;
+    const picture = machine.record("Picture");
+    const pattern = machine.bytes(this._image.addresses.picture, records.Picture.length);
+    machine.bytes(picture.$address, pattern.length).set(pattern);
+    Object.assign(picture, { width, height, channels });
+    machine.kernels.measure(0, picture.$address);
+    picture.memory = machine.reserve(picture.length);
+    machine.kernels.begin(0, picture.$address);
+    return picture;
+  }
+}
+
+/** Return the kinds of bricks that letters stand for, one for each cell. */
+export function kindsOf(bricks, { BRICK_LETTERS, CELLS }) {
+  const kinds = new Uint8Array(CELLS);
+  const letters = bricks.replace(/\s/g, "");
+  if (letters.length > CELLS) throw new RangeError(`a level has ${CELLS} cells at most`);
+  Array.from(letters).forEach((letter, cell) => {
+    const kind = BRICK_LETTERS.indexOf(letter);
+    if (kind < 0) throw new RangeError(`${letter} is no brick: ${BRICK_LETTERS} are`);
+    kinds[cell] = kind;
+  });
+  return kinds;
+}
+
+/** A level on the drawing board. */
+export class Board {
+  constructor(machine) {
+    this.machine = machine;
+    this.record = machine.record("Board");
+  }
+
+  /** The letters of the bricks, one for each cell, row by row from the top. */
+  get bricks() {
+    const { BRICK_LETTERS } = this.machine.manifest.rules;
+    return Array.from(this.record.kind, (kind) => BRICK_LETTERS[kind]).join("");
+  }
+
+  set bricks(bricks) {
+    this.record.kind = kindsOf(bricks, this.machine.manifest.rules);
+  }
+
+  /**
+   * Lay the level that the generator makes of a seed and a difficulty.
+   * @param {object} recipe what shall be otherwise: motif and symmetry (words of the manifest's
+   *   `generator`), rows, density, silver, gold
+   * @returns {string} the bricks
+   */
+  generate(seed, difficulty = 0.5, recipe = {}) {
+    const { motifs, symmetries } = this.machine.manifest.generator;
+    const numbers = { ...recipe };
+    if ("motif" in recipe) numbers.motif = motifs.indexOf(recipe.motif);
+    if ("symmetry" in recipe) numbers.symmetry = symmetries.indexOf(recipe.symmetry);
+    Object.assign(this.record, { seed, difficulty });
+    this.machine.kernels.plan(0, this.record.$address);
+    Object.assign(this.record, numbers);
+    this.machine.kernels.lay(0, this.record.$address);
+    return this.bricks;
+  }
+
+  /**
+   * Find the bricks that no ball can reach.
+   * @returns {{breakable: number, unreachable: number[]}} how many bricks can be broken; and the
+   *   cells of those that can't be reached
+   */
+  search() {
+    this.machine.kernels.search(0, this.record.$address);
+    const cells = Array.from(this.record.blocked, (blocked, cell) => (blocked ? cell : -1));
+    return { breakable: this.record.breakable, unreachable: cells.filter((cell) => cell >= 0) };
+  }
+}
