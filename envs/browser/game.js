@@ -200,6 +200,11 @@ export class Game {
     this._run("forget");
   }
 
+  /** @returns {number} where one of the image's things lies: "vector", say */
+  address(name) {
+    return this._image.addresses[name];
+  }
+
   /** Take the state into the checksum of the states so far, and return it; see `replay.js`. */
   note() {
     this._run("note");
