@@ -95,6 +95,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
         "state": {name: getattr(state, name) for name in _STATE},
         "view": {"width": FULL_WIDTH, "height": FULL_HEIGHT, "wall": WALL_WIDTH},
         "checksums": {"every": CHECK_EVERY, "noted": NOTE_EVERY},
+        "defaults": Config().plain(),
         "start": AS_THE_CONFIGURATION_SAYS,
         "infos": {
             key: {"field": field, "meaning": INFO_MEANINGS[key]}
