@@ -14,6 +14,7 @@ from ..batch.recorder import CHECK_EVERY
 from ..batch.replays import NOTE_EVERY, plain_plan
 from ..config import Config
 from ..draw.view import FULL_HEIGHT, FULL_WIDTH, WALL_WIDTH
+from ..game.rulebook import Rules
 from ..levels.files import level_names, load_level
 from ..levels.generator import (
     MAX_DENSITY,
@@ -36,6 +37,7 @@ from .records import Block, Board, Game, Network, Picture
 
 RECORDS = {
     "Game": Game,
+    "Rules": Rules,
     "World": state.World,
     "Outcome": state.Outcome,
     "Picture": Picture,
