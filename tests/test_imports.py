@@ -54,6 +54,7 @@ ORDER = {
         cli
         commands
         show
+        browser
         learn
         measure
         experiment pretrained

@@ -1,0 +1,153 @@
+// The page: it opens the game, shows one of its parts, and passes keys, pointer and time on.
+
+import { loadArkanoid } from "arkanoid/game";
+import { Clock } from "arkanoid/clock";
+import { FIELD_KEYS, KEYS } from "arkanoid/controls";
+import { bytesOf, jsonOf } from "arkanoid/data";
+import { Play } from "arkanoid/play";
+import { Scores } from "arkanoid/scores";
+import { Speaker } from "arkanoid/sound";
+import { Stage } from "arkanoid/stage";
+
+/** What the page consists of, by the addresses of its parts: #play. */
+const PARTS = { play: Play };
+
+class App {
+  constructor(arkanoid, facts) {
+    this.arkanoid = arkanoid;
+    this.facts = facts;
+    this.stage = new Stage(arkanoid.manifest.view);
+    this.speaker = new Speaker(facts.hearing);
+    this.scores = new Scores();
+    this.clock = new Clock();
+    this._parts = {};
+    this._button = (id) => document.getElementById(id);
+  }
+
+  /** @returns {HTMLElement} the panel of a part */
+  panel(name) {
+    return document.getElementById(`panel-${name}`);
+  }
+
+  /** Tell those who can't see. */
+  say(text) {
+    document.getElementById("said").textContent = text;
+  }
+
+  /** Show a part of the page. */
+  async show(name) {
+    this.part?.leave();
+    for (const panel of document.querySelectorAll(".panel")) {
+      panel.hidden = panel.id !== `panel-${name}`;
+    }
+    for (const link of document.querySelectorAll("nav a")) {
+      if (link.hash === `#${name}`) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+    }
+    this.stage.sheet();
+    const part = (this._parts[name] ??= new PARTS[name](this));
+    this.part = part;
+    await part.enter();
+    this.stage.stale = true;
+  }
+
+  /** React to a key that has a meaning. */
+  press(key) {
+    if (key === "faster" || key === "slower") this.clock.change(key === "faster" ? 1 : -1);
+    else if (key === "full") this.stage.fillScreen();
+    else if (key === "sound") this._switchSound();
+    else this.part?.press(key);
+  }
+
+  /** Listen to everything, and begin to show pictures. */
+  run() {
+    this._listen();
+    const picture = (now) => {
+      this._picture(now);
+      requestAnimationFrame(picture);
+    };
+    requestAnimationFrame(picture);
+  }
+
+  _picture(now) {
+    const { part, stage, clock } = this;
+    if (!part?.game) return;
+    const rate = this.arkanoid.manifest.rules.TICKS_PER_SECOND / part.game.config.frame_skip;
+    clock.run(now, rate, () => {
+      const more = part.tick();
+      stage.stale = true;
+      return more;
+    });
+    if (stage.stale) {
+      stage.paint(part.game);
+      part.painted?.();
+      const { score, lives, round_number: round } = part.game.world;
+      this._label(`The field: round ${round}, ${lives} lives, score ${score}`);
+    }
+    stage.say(part.notice());
+    stage.hide(part.runs && part.steers !== false);
+    write(this._button("pause").firstElementChild, part.deed);
+    write(this._button("speed"), clock.text);
+  }
+
+  _label(text) {
+    if (text !== this._labelled) this.stage.canvas.setAttribute("aria-label", text);
+    this._labelled = text;
+  }
+
+  _switchSound() {
+    this.speaker.switch();
+    this._button("sound").setAttribute("aria-pressed", String(this.speaker.on));
+  }
+
+  _listen() {
+    addEventListener("hashchange", () => this.show(partOf(location.hash)));
+    addEventListener("keydown", (event) => {
+      const key = this._meaning(event);
+      if (!key) return;
+      event.preventDefault();
+      if (!event.repeat) this.press(key);
+    });
+    addEventListener("keyup", (event) => this.part?.release(meaningOf(event)));
+    for (const id of ["pause", "once", "slower", "faster", "sound", "full"]) {
+      this._button(id).onclick = () => this.press(id);
+    }
+    addEventListener("blur", () => this.part?.leave());
+    document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
+    this.stage.listen({
+      press: (key) => this.part?.press(key),
+      release: (key) => this.part?.release(key),
+      point: (...where) => this.part?.point(...where),
+    });
+  }
+
+  /** @returns {string | undefined} what a key means where the focus is */
+  _meaning(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return undefined;
+    const { target } = event;
+    if (target.closest("input, select, textarea")) return undefined;
+    if (event.key === " " && target.closest("button, a, summary")) return undefined;
+    const onField = target === this.stage.canvas;
+    return meaningOf(event) ?? (onField ? FIELD_KEYS[event.key] : undefined);
+  }
+}
+
+function meaningOf({ key }) {
+  return KEYS[key.length === 1 ? key.toLowerCase() : key];
+}
+
+function partOf(hash) {
+  const name = hash.slice(1);
+  return Object.hasOwn(PARTS, name) ? name : Object.keys(PARTS)[0];
+}
+
+function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+const [code, manifest, facts] = await Promise.all([bytesOf("code"), jsonOf("manifest"), jsonOf("facts")]);
+const app = new App(await loadArkanoid(code, manifest), facts);
+await app.show(partOf(location.hash));
+app.run();
+/** For tests, and for whoever is curious. */
+globalThis.arkanoid = app;
