@@ -36,10 +36,10 @@ ORDER = {
     """,
     "configs": "",
     "envs": """
+        browser
         registration
         tensor_vector_env
         arkanoid_env vector_env
-        browser
         tensors
         play
         interface emulator masks
