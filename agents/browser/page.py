@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 from ...envs import browser as machine_room
 from ...envs.browser.manifest import browser_games, by_tick, make_manifest
 from ...envs.browser.module import make_module
-from ...envs.config import Config
+from ...envs.config import MOST_DECISIONS, Config
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
-_PARTS = {"play": "Play"}
+_PARTS = {"play": "Play", "watch": "Watch"}
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
 # How the modules of `envs.browser` import each other: as files in one folder.
 _RELATIVE = re.compile(r'(?<=from )"\./(\w+)\.js"')
@@ -51,13 +51,9 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
         ImportError: there is no linker for WebAssembly.
     """
     games = browser_games()
-    for agent in agents:
-        if agent.config not in games.values():
-            games[agent.name] = agent.config
-            games[f"{agent.name} by tick"] = by_tick(agent.config)
-    names = {config: name for name, config in reversed(games.items())}
+    shown = [{"name": agent.name, "game": _add_game(games, agent)} for agent in agents]
     facts = page_facts()
-    facts["agents"] = [{"name": a.name, "game": names[a.config]} for a in agents]
+    facts["agents"] = shown
     data = {
         "code": make_module(),
         "manifest": _json(make_manifest(games)),
@@ -75,6 +71,20 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
             "data": "\n".join(_data(name, content) for name, content in data.items()),
         },
     )
+
+
+def _add_game(games: dict[str, Config], agent: BrowserAgent) -> str:
+    """Return the name of an agent's game tick by tick, if it can be; it is added if missing."""
+    config = agent.config
+    ticks = config.max_decisions * config.frame_skip
+    if not config.sticky_action and ticks <= MOST_DECISIONS:
+        config = by_tick(config)
+    for name, known in games.items():
+        if known == config:
+            return name
+    name = f"{agent.name}'s game"
+    games[name] = config
+    return name
 
 
 def _fill(template: str, values: dict[str, str]) -> str:

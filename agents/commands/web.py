@@ -87,7 +87,7 @@ def _agent(name: str, trust: bool) -> "BrowserAgent":
     from ..browser import BrowserAgent
     from ..learn.portable import portable_network
 
-    return BrowserAgent(experiment.name, experiment.config, portable_network(model, experiment))
+    return BrowserAgent(experiment.name, experiment.game, portable_network(model, experiment))
 
 
 def _serve(page: str, port: int, opens: bool) -> int:

@@ -8,9 +8,10 @@ import { Play } from "arkanoid/play";
 import { Scores } from "arkanoid/scores";
 import { Speaker } from "arkanoid/sound";
 import { Stage } from "arkanoid/stage";
+import { Watch } from "arkanoid/watch";
 
 /** What the page consists of, by the addresses of its parts: #play. */
-const PARTS = { play: Play };
+const PARTS = { play: Play, watch: Watch };
 
 class App {
   constructor(arkanoid, facts) {
