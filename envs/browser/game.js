@@ -79,6 +79,10 @@ export class Game {
     this.record = machine.record("Game", at.game);
     this.world = machine.record("World", at.world);
     this.outcome = machine.record("Outcome", at.outcome);
+    this._at = at.game;
+    // What every step needs, so that it does not look for it.
+    this._action = this.record.arrays.actions;
+    this._count = this.commands?.length ?? 0;
     this._fresh = this._bytes("World", at.world).slice();
     this._run("forget");
     this._pictures = new Map();
@@ -122,11 +126,11 @@ export class Game {
    */
   step(action) {
     if (typeof action === "number") {
-      if (!Number.isInteger(action) || !(action >= 0 && action < this.commands?.length)) {
+      if (!(Number.isInteger(action) && action >= 0 && action < this._count)) {
         throw new RangeError(`${this.name} has no action ${action}`);
       }
-      this.machine.view.setBigInt64(this.record.arrays.actions, BigInt(action), true);
-      this._run("step");
+      this.machine.view.setUint32(this._action, action, true); // the upper half is always 0
+      this.machine.kernels.step(0, this._at);
       return;
     }
     const [velocity, fire] = action;
@@ -212,7 +216,7 @@ export class Game {
   }
 
   _run(kernel) {
-    this.machine.kernels[kernel](0, this._image.addresses.game);
+    this.machine.kernels[kernel](0, this._at);
   }
 
   _bytes(name, address) {
