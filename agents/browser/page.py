@@ -21,6 +21,8 @@ from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
 _PARTS = {"play": "Play", "watch": "Watch"}
+# Of `browser_games`: who plays by hand plays these, and replays are of these or of those of agents.
+_GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
 # How the modules of `envs.browser` import each other: as files in one folder.
 _RELATIVE = re.compile(r'(?<=from )"\./(\w+)\.js"')
@@ -50,7 +52,7 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
     Raises:
         ImportError: there is no linker for WebAssembly.
     """
-    games = browser_games()
+    games = {name: game for name, game in browser_games().items() if name in _GAMES}
     shown = [{"name": agent.name, "game": _add_game(games, agent)} for agent in agents]
     facts = page_facts()
     facts["agents"] = shown
@@ -74,15 +76,12 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
 
 
 def _add_game(games: dict[str, Config], agent: BrowserAgent) -> str:
-    """Return the name of an agent's game tick by tick, if it can be; it is added if missing."""
+    """Add the game that an agent plays, tick by tick if that is the same; return its name."""
     config = agent.config
     ticks = config.max_decisions * config.frame_skip
     if not config.sticky_action and ticks <= MOST_DECISIONS:
         config = by_tick(config)
-    for name, known in games.items():
-        if known == config:
-            return name
-    name = f"{agent.name}'s game"
+    name = f"{agent.name} at play"
     games[name] = config
     return name
 
