@@ -20,7 +20,7 @@ from ...envs.config import MOST_DECISIONS, Config
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
-_PARTS = {"play": "Play", "watch": "Watch"}
+_PARTS = {"play": "Play", "watch": "Watch", "replay": "Replay"}
 # Of `browser_games`: who plays by hand plays these, and replays are of these or of those of agents.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")

@@ -8,10 +8,11 @@ import { Play } from "arkanoid/play";
 import { Scores } from "arkanoid/scores";
 import { Speaker } from "arkanoid/sound";
 import { Stage } from "arkanoid/stage";
+import { Viewer } from "arkanoid/viewer";
 import { Watch } from "arkanoid/watch";
 
 /** What the page consists of, by the addresses of its parts: #play. */
-const PARTS = { play: Play, watch: Watch };
+const PARTS = { play: Play, watch: Watch, replay: Viewer };
 
 class App {
   constructor(arkanoid, facts) {
@@ -30,6 +31,11 @@ class App {
     return document.getElementById(`panel-${name}`);
   }
 
+  /** @returns {object | undefined} the replay of the game that was played last */
+  played() {
+    return this._parts.play?.recorded;
+  }
+
   /** Tell those who can't see. */
   say(text) {
     document.getElementById("said").textContent = text;
@@ -45,10 +51,11 @@ class App {
       if (link.hash === `#${name}`) link.setAttribute("aria-current", "page");
       else link.removeAttribute("aria-current");
     }
-    this.stage.sheet();
     const part = (this._parts[name] ??= new PARTS[name](this));
     this.part = part;
     await part.enter();
+    this.stage.sheet();
+    this.stage.offerStrip(part.steers !== null);
     this.stage.stale = true;
   }
 
@@ -86,8 +93,9 @@ class App {
       this._label(`The field: round ${round}, ${lives} lives, score ${score}`);
     }
     stage.say(part.notice());
-    stage.hide(part.runs && part.steers !== false);
-    write(this._button("pause").firstElementChild, part.deed);
+    stage.hide(part.runs && part.steers);
+    for (const id of ["pause", "once"]) this._button(id).disabled = part.deed === null;
+    write(this._button("pause").firstElementChild, part.deed ?? "Pause");
     write(this._button("speed"), clock.text);
   }
 
@@ -102,7 +110,10 @@ class App {
   }
 
   _listen() {
-    addEventListener("hashchange", () => this.show(partOf(location.hash)));
+    addEventListener("hashchange", async () => {
+      await this.show(partOf(location.hash));
+      this.stage.focus();
+    });
     addEventListener("keydown", (event) => {
       const key = this._meaning(event);
       if (!key) return;
@@ -111,15 +122,33 @@ class App {
     });
     addEventListener("keyup", (event) => this.part?.release(meaningOf(event)));
     for (const id of ["pause", "once", "slower", "faster", "sound", "full"]) {
-      this._button(id).onclick = () => this.press(id);
+      this._button(id).onclick = (event) => {
+        this.press(id);
+        // Who uses the mouse goes on to play with keys.
+        if (event.detail > 0) this.stage.focus();
+      };
     }
     addEventListener("blur", () => this.part?.leave());
     document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener("drop", (event) => this._drop(event));
     this.stage.listen({
       press: (key) => this.part?.press(key),
       release: (key) => this.part?.release(key),
       point: (...where) => this.part?.point(...where),
     });
+  }
+
+  /** Show a file that is dropped anywhere on the page. */
+  async _drop(event) {
+    event.preventDefault();
+    const [file] = event.dataTransfer.files;
+    if (!file) return;
+    if (location.hash !== "#replay") {
+      history.pushState(null, "", "#replay");
+      await this.show("replay");
+    }
+    await this.part.dropped(file);
   }
 
   /** @returns {string | undefined} what a key means where the focus is */

@@ -44,7 +44,12 @@ export class Play {
     return this.phase === "playing";
   }
 
-  /** What the pause button does. */
+  /** Whether the player steers; null: nobody can. */
+  get steers() {
+    return true;
+  }
+
+  /** What the pause button does; null: nothing. */
   get deed() {
     return { playing: "Pause", over: "Again", ready: "Start" }[this.phase] ?? "Go on";
   }
@@ -81,9 +86,14 @@ export class Play {
     this._ask("next");
   }
 
+  /** The replay of the game so far; undefined before its first tick. */
+  get recorded() {
+    return this.game?.world.decisions > 0 ? this._recorder.replay() : undefined;
+  }
+
   /** Let the user keep the game so far. */
   async save() {
-    const file = await this._recorder.replay().toBytes(this.game);
+    const file = await this.recorded.toBytes(this.game);
     download(file, `arkanoid_${timeStamp()}.replay`);
   }
 

@@ -112,6 +112,12 @@ export class Stage {
     return NARROW.matches;
   }
 
+  /** Offer a strip below the picture for steering by touch, or take it away. */
+  offerStrip(offered) {
+    this._strip.hidden = !offered;
+    this.fit();
+  }
+
   focus() {
     this.canvas.focus({ preventScroll: true });
   }

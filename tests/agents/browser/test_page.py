@@ -3,20 +3,18 @@
 import base64
 import json
 import zlib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.agents.cli import main
 from arkanoid.envs.batch.batch import Batch
 from arkanoid.envs.batch.recorder import CHECKED, Checked
 from arkanoid.envs.browser.manifest import browser_games
 from arkanoid.envs.levels import load_level
 from arkanoid.envs.play.by_hand import BY_HAND
-from helpers.browser import DESKTOP, PHONE, run_browser, visit, wait_until
+from helpers.browser import DESKTOP, PHONE, visit, wait_until
 
 MOST_BYTES = 1_500_000
 ALL = np.ones(1, np.bool_)
@@ -40,25 +38,6 @@ PIXELS = """() => {
   for (const byte of data) text += String.fromCharCode(byte);
   return [height, width, btoa(text)];
 }"""
-
-
-@pytest.fixture(scope="module")
-def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("page") / "game.html"
-    assert main(["web", "--out", str(path)]) == 0
-    return path
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with run_browser() as browser:
-        yield browser
-
-
-@pytest.fixture
-def page(browser: Any, file: Path) -> Iterator[Any]:
-    with visit(browser, file.as_uri(), **DESKTOP) as page:
-        yield page
 
 
 def phase(page: Any) -> str:

@@ -12,7 +12,7 @@ from urllib.request import urlopen
 
 import pytest
 from arkanoid.agents.cli import main
-from helpers.browser import DESKTOP, run_browser, visit, wait_until
+from helpers.browser import DESKTOP, visit, wait_until
 from helpers.processes import ARKANOID
 from helpers.runs import packaged_copy
 
@@ -41,12 +41,6 @@ BOTH_WAYS = """async (name) => {
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("page")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with run_browser() as browser:
-        yield browser
 
 
 @pytest.fixture(scope="module")
