@@ -86,12 +86,11 @@ def test_what_an_agent_thinks_and_sees(page: Any) -> None:
     assert 97 <= sum(int(share.removesuffix(" %")) for share in shares) <= 103
     assert float(page.locator("#value").text_content()) != 0.0
     page.get_by_text("What it sees").click()
-    assert page.locator(".seen div").count() == page.evaluate(
-        "Object.keys(arkanoid.part.game.parts.vector).length"
-    )
+    parts = "document.querySelectorAll('.seen div').length"
+    wait_until(page, f"{parts} === Object.keys(game.parts.vector).length")
     page.get_by_text("The same as planes").click()
-    planes = page.evaluate("arkanoid.part.game.shapes.grid[0]")
-    assert page.locator(".planes figure").count() == planes
+    planes = "document.querySelectorAll('.planes figure').length"
+    wait_until(page, f"{planes} === game.shapes.grid[0]")
 
 
 def test_the_paddle_is_taken_and_handed_back(page: Any) -> None:
