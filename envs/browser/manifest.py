@@ -14,6 +14,7 @@ from ..batch.recorder import CHECK_EVERY
 from ..batch.replays import NOTE_EVERY, plain_plan
 from ..config import Config
 from ..draw.view import FULL_HEIGHT, FULL_WIDTH, WALL_WIDTH
+from ..game.rulebook import Rules
 from ..levels.files import level_names, load_level
 from ..levels.generator import (
     MAX_DENSITY,
@@ -34,10 +35,25 @@ from .image import Image, lay_out
 from .network import ACTIVATIONS
 from .records import Block, Board, Game, Network, Picture
 
+
+def _scalars(dtype: "np.dtype[Any]") -> dict[str, Any]:
+    """Return a dtype's description, with those of its fields that are a number each."""
+    parts = {name: dtype.fields[name] for name in dtype.names or ()}  # type: ignore[index]
+    numbers = {name: part for name, part in parts.items() if part[0].isbuiltin}
+    return {
+        "names": list(numbers),
+        "formats": [part[0] for part in numbers.values()],
+        "offsets": [part[1] for part in numbers.values()],
+        "itemsize": dtype.itemsize,
+    }
+
+
 RECORDS = {
     "Game": Game,
     "World": state.World,
     "Outcome": state.Outcome,
+    "Rules": np.dtype(_scalars(Rules)),
+    "LevelEntry": state.LevelEntry,
     "Picture": Picture,
     "Board": Board,
     "Block": Block,
@@ -47,6 +63,7 @@ _RULES = (
     *("RULES_VERSION", "TICKS_PER_SECOND", "FIELD_WIDTH", "FIELD_HEIGHT", "COLUMNS", "ROWS"),
     *("CELLS", "LATTICE_TOP", "BRICK_WIDTH", "BRICK_HEIGHT", "PADDLE_TOP", "BALL_RADIUS"),
     *("BRICK_LETTERS", "CAPSULE_LETTERS", "EMPTY", "SILVER", "GOLD", "UNBREAKABLE"),
+    *("BALL_SPEED", "DEFLECTIONS", "REWARDS"),
     *("IDLE_TICKS", "BOSS_HITS", "CATCH", "ENLARGE", "LASER", "NO_POWER"),
 )
 _STATE = (
