@@ -35,24 +35,11 @@ from .image import Image, lay_out
 from .network import ACTIVATIONS
 from .records import Block, Board, Game, Network, Picture
 
-
-def _scalars(dtype: "np.dtype[Any]") -> dict[str, Any]:
-    """Return a dtype's description, with those of its fields that are a number each."""
-    parts = {name: dtype.fields[name] for name in dtype.names or ()}  # type: ignore[index]
-    numbers = {name: part for name, part in parts.items() if part[0].isbuiltin}
-    return {
-        "names": list(numbers),
-        "formats": [part[0] for part in numbers.values()],
-        "offsets": [part[1] for part in numbers.values()],
-        "itemsize": dtype.itemsize,
-    }
-
-
 RECORDS = {
     "Game": Game,
     "World": state.World,
     "Outcome": state.Outcome,
-    "Rules": np.dtype(_scalars(Rules)),
+    "Rules": Rules,
     "LevelEntry": state.LevelEntry,
     "Picture": Picture,
     "Board": Board,
