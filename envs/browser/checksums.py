@@ -42,7 +42,7 @@ _PARTS = _parts()
 @inlined
 def _with_byte(checksum: int, byte: int) -> int:
     """Return an unfinished checksum with one byte more."""
-    return _TABLE[(checksum ^ byte) & 255] ^ (checksum >> 8)
+    return int(_TABLE[(checksum ^ byte) & 255]) ^ (checksum >> 8)
 
 
 @kernel

@@ -1,5 +1,6 @@
 // The game in JavaScript: every rule, drawing and observation is a kernel of the module.
 
+import { Board, kindsOf } from "./board.js";
 import { Machine } from "./machine.js";
 
 /**
@@ -48,10 +49,70 @@ export class Arkanoid {
     return new Game(await this.machine(), name, image);
   }
 
+  /**
+   * Open a game with other rules and levels, such as a replay has. Nobody can observe it.
+   * @param {object} config all keywords of the environment
+   * @param {object} levels as `Replay.levels`
+   * @returns {Promise<Game>}
+   */
+  async openAs(config, levels) {
+    const [name] = Object.keys(this.manifest.games);
+    const image = this.manifest.games[name];
+    if (config.paddle !== image.config.paddle) {
+      throw new RangeError(`the paddle is ${config.paddle} times as wide as the browser's`);
+    }
+    const { length } = this.manifest.records.LevelEntry;
+    const game = new Game(await this.machine(), "a game", {
+      ...image,
+      config,
+      levels,
+      of_the_game: config,
+      commands: null,
+      meanings: null,
+      parts: {},
+      shapes: {},
+    });
+    setRules(game, config, levels);
+    const table = game.machine.reserve(levels.bricks.length * length);
+    levels.bricks.forEach((bricks, index) => {
+      const entry = game.machine.record("LevelEntry", table + index * length);
+      entry.kind = kindsOf(bricks, this.manifest.rules);
+      entry.boss = Number(levels.boss[index]);
+    });
+    game.record.arrays.levels = table;
+    game.record.arrays.num_levels = levels.bricks.length;
+    return game;
+  }
+
   /** @returns {Promise<Board>} an empty drawing board for a level */
   async board() {
     return new Board(await this.machine());
   }
+}
+
+/** Write the numbers of the rules, as `envs/game/rulebook.py` does. */
+function setRules(game, config, levels) {
+  const { rules: given } = game.machine.manifest;
+  const [first, end] = levels.seeds;
+  Object.assign(game.machine.record("Rules", game.address("rules")), {
+    ball_speed: given.BALL_SPEED * config.speed,
+    frame_skip: config.frame_skip,
+    sticky_action: config.sticky_action,
+    auto_fire: Number(config.actions === "discrete3"),
+    deflection: given.DEFLECTIONS[config.deflection],
+    reward: given.REWARDS[config.reward],
+    life_penalty: config.life_penalty,
+    lives: config.lives,
+    max_decisions: config.max_decisions,
+    capsule_rate: config.capsules ? config.capsule_rate : 0,
+    enemies: Number(config.enemies),
+    first_seed: first,
+    num_seeds: end - first,
+    table_counts: Number(levels.names.length > 0),
+    endless: Number(levels.endless),
+    difficulty: config.difficulty ?? -1,
+    first_difficulty: levels.first_difficulty,
+  });
 }
 
 /** Decode base64, as the manifest holds bytes. */
@@ -68,6 +129,7 @@ export class Game {
     this.commands = image.commands; // velocity and fire of each action; null: actions are these
     this.meanings = image.meanings; // of each action
     this.levels = image.levels;
+    this.rules = image.of_the_game; // the configuration, without what does not change the game
     this.parts = image.parts; // of observations: first and last place (exclusive) by name
     this.shapes = image.shapes; // of observations
     this._image = image;
@@ -155,6 +217,7 @@ export class Game {
 
   /** @returns {Float32Array} the game as agents see it, in the order of `parts.vector` */
   vector() {
+    this._check("vector");
     this._run("vector");
     const [length] = this.shapes.vector;
     return this.machine.array("f4", this._image.addresses.vector, length);
@@ -162,6 +225,7 @@ export class Game {
 
   /** @returns {Float32Array} planes over the cells of the field, of `shapes.grid` */
   grid() {
+    this._check("grid");
     this._run("grid");
     const length = this.shapes.grid.reduce((one, other) => one * other, 1);
     return this.machine.array("f4", this._image.addresses.grid, length);
@@ -213,6 +277,10 @@ export class Game {
   note() {
     this._run("note");
     return this.record.checksum;
+  }
+
+  _check(kind) {
+    if (!this.shapes[kind]) throw new Error(`${this.name} can't be observed`);
   }
 
   _run(kernel) {
@@ -270,65 +338,5 @@ export class Game {
     picture.memory = machine.reserve(picture.length);
     machine.kernels.begin(0, picture.$address);
     return picture;
-  }
-}
-
-/** Return the kinds of bricks that letters stand for, one for each cell. */
-export function kindsOf(bricks, { BRICK_LETTERS, CELLS }) {
-  const kinds = new Uint8Array(CELLS);
-  const letters = bricks.replace(/\s/g, "");
-  if (letters.length > CELLS) throw new RangeError(`a level has ${CELLS} cells at most`);
-  Array.from(letters).forEach((letter, cell) => {
-    const kind = BRICK_LETTERS.indexOf(letter);
-    if (kind < 0) throw new RangeError(`${letter} is no brick: ${BRICK_LETTERS} are`);
-    kinds[cell] = kind;
-  });
-  return kinds;
-}
-
-/** A level on the drawing board. */
-export class Board {
-  constructor(machine) {
-    this.machine = machine;
-    this.record = machine.record("Board");
-  }
-
-  /** The letters of the bricks, one for each cell, row by row from the top. */
-  get bricks() {
-    const { BRICK_LETTERS } = this.machine.manifest.rules;
-    return Array.from(this.record.kind, (kind) => BRICK_LETTERS[kind]).join("");
-  }
-
-  set bricks(bricks) {
-    this.record.kind = kindsOf(bricks, this.machine.manifest.rules);
-  }
-
-  /**
-   * Lay the level that the generator makes of a seed and a difficulty.
-   * @param {object} recipe what shall be otherwise: motif and symmetry (words of the manifest's
-   *   `generator`), rows, density, silver, gold
-   * @returns {string} the bricks
-   */
-  generate(seed, difficulty = 0.5, recipe = {}) {
-    const { motifs, symmetries } = this.machine.manifest.generator;
-    const numbers = { ...recipe };
-    if ("motif" in recipe) numbers.motif = motifs.indexOf(recipe.motif);
-    if ("symmetry" in recipe) numbers.symmetry = symmetries.indexOf(recipe.symmetry);
-    Object.assign(this.record, { seed, difficulty });
-    this.machine.kernels.plan(0, this.record.$address);
-    Object.assign(this.record, numbers);
-    this.machine.kernels.lay(0, this.record.$address);
-    return this.bricks;
-  }
-
-  /**
-   * Find the bricks that no ball can reach.
-   * @returns {{breakable: number, unreachable: number[]}} how many bricks can be broken; and the
-   *   cells of those that can't be reached
-   */
-  search() {
-    this.machine.kernels.search(0, this.record.$address);
-    const cells = Array.from(this.record.blocked, (blocked, cell) => (blocked ? cell : -1));
-    return { breakable: this.record.breakable, unreachable: cells.filter((cell) => cell >= 0) };
   }
 }

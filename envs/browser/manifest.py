@@ -40,6 +40,8 @@ RECORDS = {
     "Rules": Rules,
     "World": state.World,
     "Outcome": state.Outcome,
+    "Rules": Rules,
+    "LevelEntry": state.LevelEntry,
     "Picture": Picture,
     "Board": Board,
     "Block": Block,
@@ -49,6 +51,7 @@ _RULES = (
     *("RULES_VERSION", "TICKS_PER_SECOND", "FIELD_WIDTH", "FIELD_HEIGHT", "COLUMNS", "ROWS"),
     *("CELLS", "LATTICE_TOP", "BRICK_WIDTH", "BRICK_HEIGHT", "PADDLE_TOP", "BALL_RADIUS"),
     *("BRICK_LETTERS", "CAPSULE_LETTERS", "EMPTY", "SILVER", "GOLD", "UNBREAKABLE"),
+    *("BALL_SPEED", "DEFLECTIONS", "REWARDS"),
     *("IDLE_TICKS", "BOSS_HITS", "CATCH", "ENLARGE", "LASER", "NO_POWER"),
 )
 _STATE = (

@@ -74,10 +74,11 @@ def draw_picture(address: int, picture: Any) -> None:
 @inlined
 def _looks(picture: Any) -> int:
     """Return where the looks of bricks lie: behind pixels and background."""
-    return picture.memory + 2 * _in_words(picture.height * picture.width * picture.channels)
+    pixels = _in_words(picture.height * picture.width * picture.channels)
+    return int(picture.memory + 2 * pixels)
 
 
 @inlined
 def _palette(picture: Any) -> int:
     """Return where the palette lies."""
-    return picture.palettes[1 - picture.place.header, picture.channels]
+    return int(picture.palettes[1 - picture.place.header, picture.channels])

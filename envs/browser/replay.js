@@ -47,8 +47,20 @@ export class Replay {
   }
 
   /**
+   * Open the game that can play it.
+   * @param {Arkanoid} arkanoid
+   * @returns {Promise<Game>} one of the manifest's games, which can be observed, if one fits
+   * @throws {RangeError} the replay's paddle is wider or narrower than the browser's
+   */
+  async open(arkanoid) {
+    const name = this.gameOf(arkanoid.manifest);
+    if (name) return arkanoid.open(name);
+    return arkanoid.openAs({ ...arkanoid.manifest.defaults, ...this.config }, this.levels);
+  }
+
+  /**
    * Play it again, and compare its checksums.
-   * @param {Game} game of the name that `gameOf` returned
+   * @param {Game} game that `open` returned
    * @yields {number} how many decisions are played: 0 at first
    * @throws {Error} the game takes another course
    */
@@ -184,11 +196,10 @@ export class Recorder {
   /** @returns {Replay} the game so far */
   replay() {
     const { game } = this;
-    const { of_the_game: config, levels } = game.machine.manifest.games[game.name];
     const head = {
       version: game.machine.manifest.version,
-      config,
-      levels,
+      config: game.rules,
+      levels: game.levels,
       start: this._start,
       result: resultOf(game, this._commands.length / 2, this._reward),
       checksums: [...this._checksums, this._checksum],

@@ -39,11 +39,8 @@ def make_once(product: Product, entries: Sequence[Entry], make: Callable[[], byt
     Args:
         entries: all of one file.
     """
-    makers = [digest(Path(__file__).with_name(name), "") for name in product.makers]
-    compiler = f"{product.name} {numba.__version__} {llvmlite.__version__} {makers} {entries!r}"
-    # The digest covers what the entries' file imports.
-    (file,) = {entry.file for entry in entries}
-    folder = writable_folder(file, compiler)
+    versions = f"{numba.__version__} {llvmlite.__version__}"
+    folder = writable_folder(_file(entries), f"{_makers(product, entries)} {versions}")
     kept = None if folder is None else folder / f"entries.{product.name}"
     made = None if kept is None else _load(kept, product)
     if made is None:
@@ -52,6 +49,27 @@ def make_once(product: Product, entries: Sequence[Entry], make: Callable[[], byt
         if kept is not None:
             _save(kept, product, made)
     return made
+
+
+def sources_of(product: Product, entries: Sequence[Entry]) -> str:
+    """Return a digest, of 16 letters, of all sources that are needed to make it.
+
+    Args:
+        entries: all of one file.
+    """
+    return digest(_file(entries), _makers(product, entries))
+
+
+def _makers(product: Product, entries: Sequence[Entry]) -> str:
+    """Return what is made, and the digests of the files that make it."""
+    digests = [digest(Path(__file__).with_name(name), "") for name in product.makers]
+    return f"{product.name} {digests} {entries!r}"
+
+
+def _file(entries: Sequence[Entry]) -> Path:
+    """Return the file of entries, whose digest covers what it imports."""
+    (file,) = {entry.file for entry in entries}
+    return file
 
 
 def _load(kept: Path, product: Product) -> bytes | None:

@@ -18,7 +18,7 @@ from pathlib import Path
 import llvmlite.binding as llvm
 
 from .entries import Entry, compile_entries
-from .kept import Product, make_once
+from .kept import Product, make_once, sources_of
 from .retarget import retarget
 
 # The module's stack and constants lie below this address. What lies above is for its user.
@@ -67,6 +67,15 @@ def make_wasm(entries: Sequence[Entry]) -> bytes:
         RuntimeError: the entries could not be compiled or linked.
     """
     return make_once(_WASM, entries, lambda: _make(entries))
+
+
+def wasm_sources(entries: Sequence[Entry]) -> str:
+    """Return a digest, of 16 letters, of all sources that the module of entries is made of.
+
+    Args:
+        entries: all of one file.
+    """
+    return sources_of(_WASM, entries)
 
 
 def _make(entries: Sequence[Entry]) -> bytes:

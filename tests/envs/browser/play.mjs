@@ -61,11 +61,25 @@ const works = {
   async replay({ file }) {
     const tools = await arkanoid.open("full");
     const replay = await Replay.fromBytes(Buffer.from(file, "base64"), tools);
-    const game = await arkanoid.open(replay.gameOf(arkanoid.manifest));
+    const game = await replay.open(arkanoid);
     const digest = createHash("sha256");
     for (const _ of replay.play(game)) digest.update(game.save());
     const again = Buffer.from(await replay.toBytes(tools)).toString("base64");
-    return { digest: digest.digest("hex"), again };
+    return { digest: digest.digest("hex"), again, game: game.name };
+  },
+
+  /** Open games with other rules, and return these. */
+  async rules({ games }) {
+    const found = [];
+    for (const [config, levels] of games) {
+      const { machine, address } = await arkanoid.openAs(config, levels).then((game) => ({
+        machine: game.machine,
+        address: game.address("rules"),
+      }));
+      const { length } = arkanoid.manifest.records.Rules;
+      found.push(Buffer.from(machine.bytes(address, length)).toString("base64"));
+    }
+    return found;
   },
 
   /** Play and record a game. */
@@ -128,7 +142,7 @@ const works = {
   },
 
   /** Make mistakes. */
-  async mistakes() {
+  async mistakes(job) {
     const game = await arkanoid.open("lite");
     const tools = await arkanoid.open("full");
     const replay = await new Recorder(tools);
@@ -138,7 +152,11 @@ const works = {
     damaged[40] ^= 1;
     const first = await thrown(() => game.reset());
     game.reset({ seed: 1 });
+    const { plain, plan } = job;
+    const other = await arkanoid.openAs(plain, plan);
     const acts = {
+      paddle: () => arkanoid.openAs({ ...plain, paddle: 2 }, plan),
+      unseen: () => other.vector(),
       game: () => arkanoid.open("chess"),
       number: () => game.step(3),
       fraction: () => game.step(0.5),

@@ -15,18 +15,22 @@ import pytest
 from arkanoid.envs.actions import COMMANDS
 from arkanoid.envs.batch.batch import Batch
 from arkanoid.envs.batch.playback import play_replay, replay_states
+from arkanoid.envs.batch.recorder import Recorder
 from arkanoid.envs.batch.replays import Replay, plain_plan
 from arkanoid.envs.browser.entries import ENTRIES
 from arkanoid.envs.browser.manifest import browser_games, make_manifest
 from arkanoid.envs.config import Config
 from arkanoid.envs.draw.picture import draw_world
+from arkanoid.envs.game.rulebook import make_rules
 from arkanoid.envs.levels.clearability import unreachable_bricks
 from arkanoid.envs.levels.files import CAMPAIGN
 from arkanoid.envs.levels.generated import generate_level
 from arkanoid.envs.levels.generator import MAX_SEED, SYMMETRIES
 from arkanoid.envs.levels.motifs import MOTIFS
+from arkanoid.envs.levels.plan import plan_levels
 from arkanoid.envs.observe.planes import GridObserver
 from arkanoid.envs.observe.vector import VectorObserver
+from arkanoid.envs.play.by_hand import BY_HAND
 from arkanoid.envs.rules import BRICK_LETTERS, CELLS, COLUMNS, GOLD, ROWS
 from arkanoid.envs.state import INFO_FIELDS
 from arkanoid.physics.kernels.portable.wasm import make_wasm
@@ -54,6 +58,17 @@ GAMES = {
     **{name: Config.from_keywords(keywords) for name, keywords in OTHERS.items()},
     "golden": GOLDEN.config,
 }
+# Games that the page does not know, of which there may be replays.
+ELSEWHERE = {
+    "one level again and again": {"levels": "seed:7", "difficulty": 0.5, **BY_HAND},
+    "two levels": {"levels": ["moat", "warden"], "lives": 1, "reward": "score"},
+    "fast": {"speed": 2.5, "life_penalty": 1.0, "deflection": "zones6", "capsules": False},
+    "without fire": {"actions": "discrete3", "frame_skip": 2, "enemies": False, "levels": "train"},
+}
+RULES = [
+    *(config for config in GAMES.values() if config.paddle == 1.0),
+    *(Config.from_keywords(keywords) for keywords in ELSEWHERE.values()),
+]
 # How many decisions of random play are compared, in `PART`s.
 LENGTHS = {"full": 80, "lite": 40, "everything": 40}
 
@@ -132,6 +147,25 @@ def picture(batch: Batch, height: int, width: int, channels: int) -> np.ndarray:
     return drawn if channels < 4 else np.concatenate([drawn, opacity], axis=2)
 
 
+@cache
+def recorded(name: str) -> Replay:
+    """Return a game of `ELSEWHERE`, played at random."""
+    config = Config.from_keywords(ELSEWHERE[name])
+    batch = Batch(1, config)
+    recorder = Recorder(batch, 0)
+    batch.reset(ALL, None, [1])
+    for action in random_actions(config, 600, 1):
+        if recorder.over:
+            break
+        batch.command(np.array([action]))
+        batch.step()
+    return recorder.replay()
+
+
+def encoded(name: str) -> str:
+    return base64.b64encode(recorded(name).to_bytes()).decode()
+
+
 def recipes() -> list[dict]:
     """Return 200 levels for the generator, every other one with parts of its recipe fixed."""
     luck = np.random.default_rng(3)
@@ -168,6 +202,11 @@ def jobs() -> dict:
     return {
         **{f"play {name}": job for name, job in PLAYS.items()},
         "golden": {"work": "replay", "file": file},
+        **{f"replay {name}": {"work": "replay", "file": encoded(name)} for name in ELSEWHERE},
+        "rules": {
+            "work": "rules",
+            "games": [[config.plain(), plain_plan(plan_levels(config))] for config in RULES],
+        },
         "recorded by hand": hand | {"work": "record", "actions": box},
         "recorded": playing("lite", 2**64 - 1, {"levelSeed": 5}, 2000) | {"work": "record"},
         "generate": {"work": "generate", "levels": recipes()},
@@ -178,7 +217,11 @@ def jobs() -> dict:
             "actions": random_actions(GAMES["everything"], 100, 7),
         },
         "names": {"work": "names"},
-        "mistakes": {"work": "mistakes"},
+        "mistakes": {
+            "work": "mistakes",
+            "plain": Config().plain(),
+            "plan": plain_plan(plan_levels(Config())),
+        },
     }
 
 
@@ -214,6 +257,22 @@ def test_the_golden_replay(done: dict) -> None:
     assert plain_plan(again.plan) == plain_plan(GOLDEN.plan)
     same = {"commands": GOLDEN.commands, "plan": GOLDEN.plan}
     assert replace(again, **same) == GOLDEN
+
+
+@pytest.mark.parametrize("name", ELSEWHERE)
+def test_replays_of_games_that_the_page_does_not_know(done: dict, name: str) -> None:
+    digest = hashlib.sha256()
+    for batch in replay_states(recorded(name)):
+        digest.update(batch.worlds.tobytes() + batch.outcomes.tobytes())
+    found = done[f"replay {name}"]
+    assert found["digest"] == digest.hexdigest()
+    assert found["game"] == "a game"
+
+
+def test_rules_from_a_configuration(done: dict) -> None:
+    """JavaScript writes them as Python does, in every bit."""
+    for config, found in zip(RULES, done["rules"], strict=True):
+        assert base64.b64decode(found) == make_rules(config, plan_levels(config)).tobytes(), config
 
 
 @pytest.mark.parametrize("name", ["recorded by hand", "recorded"])
@@ -271,6 +330,8 @@ def test_fields_have_their_names(done: dict) -> None:
         "state": "these bytes are no state",
         "nothing": "this is no replay",
         "damaged": "the replay is damaged",
+        "paddle": "the paddle is 2 times as wide as the browser's",
+        "unseen": "a game can't be observed",
         "early": "a recording begins with a reset",
     }.items(),
 )
