@@ -15,13 +15,13 @@ from typing import Any, NamedTuple
 
 from ...envs import browser as machine_room
 from ...envs.browser.manifest import browser_games, by_tick, make_manifest
-from ...envs.browser.module import make_module
+from ...envs.browser.shipped import game_module
 from ...envs.config import MOST_DECISIONS, Config
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
 _PARTS = {"play": "Play", "watch": "Watch", "replay": "Replay"}
-# Of `browser_games`: who plays by hand plays these, and replays are of these or of those of agents.
+# Of `browser_games`: those that people play, and those that agents were trained in.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
 # How the modules of `envs.browser` import each other: as files in one folder.
@@ -57,7 +57,7 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
     facts = page_facts()
     facts["agents"] = shown
     data = {
-        "code": make_module(),
+        "code": game_module(),
         "manifest": _json(make_manifest(games)),
         "facts": _json(facts),
     }

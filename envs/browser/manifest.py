@@ -37,7 +37,6 @@ from .records import Block, Board, Game, Network, Picture
 
 RECORDS = {
     "Game": Game,
-    "Rules": Rules,
     "World": state.World,
     "Outcome": state.Outcome,
     "Rules": Rules,

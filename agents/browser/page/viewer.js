@@ -117,12 +117,12 @@ export class Viewer {
   async _begin(replay, name) {
     this._forget();
     const { arkanoid, stage } = this.app;
-    const gameName = replay.gameOf(arkanoid.manifest);
-    if (!gameName) {
-      this._tell(name, "It is of a game with other settings, which this page does not have.", false);
+    try {
+      this._game = await replay.open(arkanoid);
+    } catch (error) {
+      this._tell(name, `${sentence(error.message)}.`, false);
       return;
     }
-    this._game = await arkanoid.open(gameName);
     this._replay = replay;
     this._name = name;
     this._apart = Math.max(LEAST_APART, Math.ceil(replay.length / MOST_SNAPSHOTS));

@@ -12,7 +12,9 @@ from arkanoid.envs.batch.playback import play_replay
 from arkanoid.envs.batch.recorder import Recorder
 from arkanoid.envs.batch.replays import Replay
 from arkanoid.envs.browser.manifest import browser_games
+from arkanoid.envs.config import Config
 from helpers.browser import wait_until
+from helpers.repository import TESTS
 
 DROP = """([name, text]) => {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -99,14 +101,25 @@ def test_the_game_just_played(page: Any) -> None:
     assert verdict(page).startswith("The same game: all ")
 
 
+def test_any_configuration_can_be_seen(page: Any) -> None:
+    """The golden replay has capsules, enemies, more lives, and levels of its own."""
+    drop(page, "golden.replay", (TESTS / "envs" / "batch" / "golden.replay").read_bytes())
+    assert verdict(page).startswith("The same game: all ")
+
+
+def test_a_paddle_of_another_width_is_refused(page: Any) -> None:
+    batch = Batch(1, Config(paddle=2.0))
+    recorder = Recorder(batch, 0)
+    batch.reset(np.ones(1, np.bool_), {}, [3])
+    drop(page, "wide.replay", recorder.replay().to_bytes())
+    assert verdict(page) == "The paddle is 2 times as wide as the browser's."
+
+
 def test_files_that_are_no_replays(page: Any, recorded: bytes) -> None:
     for content, sentence in {
         b"name: Mine\n\n...": "This is no replay.",
         recorded[:-1]: "The replay is damaged.",
         recorded[:200] + b"?" + recorded[201:]: "The replay is damaged.",
-        Replay.load(Path(__file__).parents[2] / "envs" / "batch" / "golden.replay").to_bytes(): (
-            "It is of a game with other settings, which this page does not have."
-        ),
     }.items():
         page.evaluate("() => { document.getElementById('verdict').textContent = ''; }")
         drop(page, "some.replay", content)
