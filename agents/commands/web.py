@@ -42,15 +42,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Write the page, or serve it until Ctrl-C; return the exit status."""
     out = None if arguments.out is None else Path(arguments.out)
     _check(out, arguments)
-    agents = [_agent(arguments.model, arguments.trust)] if arguments.model else []
-    shown = {agent.name for agent in agents}
-    agents += [_agent(name, False) for name in _by_game() if name not in shown]
-    from ..browser import make_page
-
-    try:
-        page = make_page(agents)
-    except ImportError as error:  # of the linker
-        raise SettingsError(str(error)) from None
+    page = packaged_page(*_own_agent(arguments.model, arguments.trust))
     if out is None:
         return _serve(page, arguments.port or 0, not arguments.no_open)
     try:
@@ -73,9 +65,24 @@ def _check(out: Path | None, arguments: argparse.Namespace) -> None:
         raise SettingsError(f"--port: at most {_MOST_PORT}, not {arguments.port}")
 
 
-def _by_game() -> list[str]:
-    """Return the packaged agents, those of the whole game first."""
-    return sorted(packaged_agents(), key=lambda name: (name != "full", name))
+def packaged_page(*others: "BrowserAgent") -> str:
+    """Return the page with the packaged agents, after others; HTML.
+
+    Raises `SettingsError` where the game can't be made for browsers.
+    """
+    from ..browser import make_page
+
+    taken = {agent.name for agent in others}
+    # Those of the whole game first.
+    names = sorted(packaged_agents(), key=lambda name: (name != "full", name))
+    try:
+        return make_page([*others, *(_agent(name, False) for name in names if name not in taken)])
+    except ImportError as error:  # of the linker
+        raise SettingsError(str(error)) from None
+
+
+def _own_agent(name: str | None, trust: bool) -> "list[BrowserAgent]":
+    return [] if name is None else [_agent(name, trust)]
 
 
 def _agent(name: str, trust: bool) -> "BrowserAgent":
