@@ -13,7 +13,7 @@ NOX = $(BIN)/python -m nox --noxfile tests/noxfile.py --session
 REQUIREMENTS = pyproject.toml constraints.txt version.py
 
 .DEFAULT_GOAL = help
-.PHONY: help train test lint types format docs check distcheck bench compat ray lock clean
+.PHONY: help train web test lint types format docs check distcheck bench compat ray lock clean
 
 help:  ## Show the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -21,6 +21,9 @@ help:  ## Show the targets
 train: $(VENV)/train  ## Train an agent for about a minute, and show how well it plays
 	$(BIN)/arkanoid warm-up
 	$(BIN)/arkanoid train quick
+
+web: $(VENV)/web  ## Play in the browser, and watch the trained agents
+	$(BIN)/arkanoid web
 
 test: $(VENV)/dev  ## Run the tests (PYTEST="-k paddle" passes options on)
 	$(BIN)/python -m pytest -n 2 $(PYTEST)
@@ -78,9 +81,13 @@ $(VENV)/train: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[train,play]'
 	touch $@
 
+$(VENV)/web: $(REQUIREMENTS) | $(VENV)/made
+	$(INSTALL) '.[train,web]'
+	touch $@
+
 $(VENV)/dev: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[dev]'
-	touch $@ $(VENV)/train
+	touch $@ $(VENV)/train $(VENV)/web
 
 $(VENV)/docs: $(REQUIREMENTS) | $(VENV)/made
 	$(INSTALL) '.[docs]'

@@ -27,6 +27,7 @@ _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
 # How the modules of `envs.browser` import each other: as files in one folder.
 _RELATIVE = re.compile(r'(?<=from )"\./(\w+)\.js"')
 _PREFIX = "arkanoid/"
+_HERE = resources.files(str(__package__))
 
 
 class BrowserAgent(NamedTuple):
@@ -91,7 +92,7 @@ def _fill(template: str, values: dict[str, str]) -> str:
 
 
 def _read(name: str) -> str:
-    return (resources.files(__package__) / "markup" / name).read_text(encoding="utf-8")
+    return (_HERE / "markup" / name).read_text(encoding="utf-8")
 
 
 def _panel(name: str) -> str:
@@ -100,7 +101,7 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), resources.files(__package__) / "modules")
+    folders = (resources.files(machine_room), _HERE / "modules")
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
         for folder in folders

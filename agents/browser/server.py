@@ -25,8 +25,8 @@ class PageServer(ThreadingHTTPServer):
     daemon_threads = True
 
     def __init__(self, page: str, port: int) -> None:
-        self.content = page.encode()
-        super().__init__((HOST, port), _Handler)
+        content = page.encode()
+        super().__init__((HOST, port), lambda *args: _Handler(content, *args))
 
     @property
     def address(self) -> str:
@@ -35,7 +35,9 @@ class PageServer(ThreadingHTTPServer):
 
 
 class _Handler(BaseHTTPRequestHandler):
-    server: PageServer
+    def __init__(self, content: bytes, *args: Any) -> None:
+        self._content = content
+        super().__init__(*args)
 
     def do_GET(self) -> None:
         """Send the page."""
@@ -45,7 +47,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Send what would stand before the page."""
         self._send(with_content=False)
 
-    def log_message(self, *_: Any) -> None:
+    def log_message(self, format: str, *_: Any) -> None:  # noqa: A002 (its name there)
         """Print nothing: the terminal shows the address."""
 
     def _send(self, with_content: bool) -> None:
@@ -54,9 +56,9 @@ class _Handler(BaseHTTPRequestHandler):
             return
         self.send_response(200)
         self.send_header("Content-Type", "text/html; charset=utf-8")
-        self.send_header("Content-Length", str(len(self.server.content)))
+        self.send_header("Content-Length", str(len(self._content)))
         self.send_header("Content-Security-Policy", _POLICY)
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
         if with_content:
-            self.wfile.write(self.server.content)
+            self.wfile.write(self._content)
