@@ -91,7 +91,7 @@ def _fill(template: str, values: dict[str, str]) -> str:
 
 
 def _read(name: str) -> str:
-    return (resources.files(__package__) / "markup" / name).read_text(encoding="utf-8")
+    return (resources.files(str(__package__)) / "markup" / name).read_text(encoding="utf-8")
 
 
 def _panel(name: str) -> str:
@@ -100,7 +100,7 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), resources.files(__package__) / "modules")
+    folders = (resources.files(machine_room), resources.files(str(__package__)) / "modules")
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
         for folder in folders
