@@ -11,6 +11,7 @@ from urllib.error import HTTPError
 from urllib.request import urlopen
 
 import pytest
+from arkanoid.agents.browser import page as page_module
 from arkanoid.agents.cli import main
 from arkanoid.agents.experiment.runs import ModelFile
 from arkanoid.agents.show.page import as_html
@@ -155,3 +156,24 @@ def test_a_report_shows_its_agent_at_play(browser: Any, folder: Path) -> None:
     inside.get_by_role("button", name="Hand back").wait_for()
     assert faults == []
     page.close()
+
+
+def test_a_port_that_is_taken(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    port = address.rstrip("/").rpartition(":")[2]
+    assert main(["web", "--no-open", "--port", port]) == 2
+    assert f"127.0.0.1:{port} cannot be served" in capsys.readouterr().err
+
+
+def test_without_a_linker_there_is_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Where the module did not come with the package and cannot be made."""
+
+    def fail() -> bytes:
+        raise ImportError("to make the game for browsers needs the linker wasm-ld")
+
+    monkeypatch.setattr(page_module, "game_module", fail)
+    assert main(["web", "--out", str(tmp_path / "game.html")]) == 2
+    assert "needs the linker wasm-ld" in capsys.readouterr().err
+    # A report only lacks the agent at play.
+    assert show_alive(ModelFile.find("lite", False), []) == ""
