@@ -168,7 +168,8 @@ class App {
   /** @returns {string | undefined} what a key means where the focus is */
   _meaning(event) {
     const { target } = event;
-    if (event.altKey || target.closest("input:not([type=checkbox]), select, textarea")) return undefined;
+    const typing = target.closest("input:not([type=checkbox]), select, textarea");
+    if (event.altKey || typing) return undefined;
     if (event.key === " " && target.closest("input")) return undefined;
     const own = this.part?.keys;
     if (own && Object.hasOwn(own, wordOf(event))) return own[wordOf(event)];
@@ -199,7 +200,8 @@ function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const [code, manifest, facts] = await Promise.all([bytesOf("code"), jsonOf("manifest"), jsonOf("facts")]);
+const parts = [bytesOf("code"), jsonOf("manifest"), jsonOf("facts")];
+const [code, manifest, facts] = await Promise.all(parts);
 const app = new App(await loadArkanoid(code, manifest), facts);
 await app.show(partOf(location.hash));
 app.run();
