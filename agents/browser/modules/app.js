@@ -125,7 +125,11 @@ class App {
       await this.show(partOf(location.hash));
       this.stage.focus();
     });
+    // Who points at things needs no ring around the field; who goes on by Tab does.
+    const { classList } = document.documentElement;
+    addEventListener("pointerdown", () => classList.add("points"), true);
     addEventListener("keydown", (event) => {
+      if (event.key === "Tab") classList.remove("points");
       const key = this._meaning(event);
       if (!key) return;
       event.preventDefault();
