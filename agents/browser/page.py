@@ -11,12 +11,13 @@ from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
 from importlib import resources
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...envs import browser as machine_room
 from ...envs.browser.manifest import browser_games, by_tick, make_manifest
 from ...envs.browser.shipped import game_module
 from ...envs.config import MOST_DECISIONS, Config
+from .agents import BrowserAgent
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
@@ -30,25 +31,12 @@ _PREFIX = "arkanoid/"
 _HERE = resources.files(str(__package__))
 
 
-class BrowserAgent(NamedTuple):
-    """An agent that the page shows.
-
-    Attributes:
-        name: shown, and unique on the page.
-        config: of the game that it plays.
-        network: the file of `portable_network`.
-    """
-
-    name: str
-    config: Config
-    network: bytes
-
-
-def make_page(agents: Sequence[BrowserAgent]) -> str:
+def make_page(agents: Sequence[BrowserAgent], opens: str = "play") -> str:
     """Return the page, as HTML.
 
     Args:
         agents: which can be watched, the first one at first.
+        opens: which of its parts is shown where the address names none: ``"watch"``, say.
 
     Raises:
         ImportError: there is no linker for WebAssembly.
@@ -67,6 +55,7 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
         _read("index.html"),
         {
             "icon": page_icon(),
+            "opens": opens,
             "style": _read("style.css"),
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
             "panels": "\n".join(map(_panel, _PARTS)),

@@ -24,6 +24,8 @@ class App {
     this.scores = new Scores();
     this.clock = new Clock();
     this._parts = {};
+    // Some telephones fill the screen with films only.
+    document.getElementById("full").hidden = !document.fullscreenEnabled;
     this._button = (id) => document.getElementById(id);
   }
 
@@ -123,7 +125,11 @@ class App {
       await this.show(partOf(location.hash));
       this.stage.focus();
     });
+    // Who points at things needs no ring around the field; who goes on by Tab does.
+    const { classList } = document.documentElement;
+    addEventListener("pointerdown", () => classList.add("points"), true);
     addEventListener("keydown", (event) => {
+      if (event.key === "Tab") classList.remove("points");
       const key = this._meaning(event);
       if (!key) return;
       event.preventDefault();
@@ -137,8 +143,7 @@ class App {
         if (event.detail > 0) this.stage.focus();
       };
     }
-    addEventListener("blur", () => this.part?.leave());
-    document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
+    addEventListener("blur", () => this.part?.loseFocus?.());
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => this._drop(event));
     this.stage.listen({
@@ -167,7 +172,8 @@ class App {
   /** @returns {string | undefined} what a key means where the focus is */
   _meaning(event) {
     const { target } = event;
-    if (event.altKey || target.closest("input:not([type=checkbox]), select, textarea")) return undefined;
+    const typing = target.closest("input:not([type=checkbox]), select, textarea");
+    if (event.altKey || typing) return undefined;
     if (event.key === " " && target.closest("input")) return undefined;
     const own = this.part?.keys;
     if (own && Object.hasOwn(own, wordOf(event))) return own[wordOf(event)];
@@ -191,14 +197,15 @@ function wordOf({ key, ctrlKey, metaKey, shiftKey }) {
 
 function partOf(hash) {
   const name = hash.slice(1);
-  return Object.hasOwn(PARTS, name) ? name : Object.keys(PARTS)[0];
+  return Object.hasOwn(PARTS, name) ? name : document.body.dataset.opens;
 }
 
 function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const [code, manifest, facts] = await Promise.all([bytesOf("code"), jsonOf("manifest"), jsonOf("facts")]);
+const parts = [bytesOf("code"), jsonOf("manifest"), jsonOf("facts")];
+const [code, manifest, facts] = await Promise.all(parts);
 const app = new App(await loadArkanoid(code, manifest), facts);
 await app.show(partOf(location.hash));
 app.run();

@@ -20,7 +20,9 @@ export class Watch {
     this.phase = "opening";
     const panel = app.panel("watch");
     const form = panel.querySelector("form");
-    const choices = app.facts.agents.map(({ name, game }) => ({ name, title: name, hint: "", game }));
+    const choices = app.facts.agents.map(({ name, game }) => {
+      return { name, title: name, hint: "", game };
+    });
     this._form = new StartForm(form, app.arkanoid.manifest, "Agent", choices, () => this._layOut());
     form.onsubmit = (event) => event.preventDefault();
     panel.querySelector("[data-do=next]").onclick = () => this._layOut();
@@ -65,6 +67,11 @@ export class Watch {
     if (this.runs) this.phase = "paused";
   }
 
+  /** Pause if the player steers; agents go on. */
+  loseFocus() {
+    if (this._hand && this.phase === "playing") this._pause();
+  }
+
   press(key) {
     if (key === "pause" || (key === "fire" && !(this._hand && this.runs))) this._pause();
     else if (key === "once") this._once();
@@ -98,7 +105,9 @@ export class Watch {
       return { title: "Paused", buttons: [["Go on", () => this._pause()]], band: true };
     }
     const { score, round_number: round } = this.game.world;
-    if (this.phase === "over") return { title: "Game over", lines: [`Score ${score} · round ${round}`] };
+    if (this.phase === "over") {
+      return { title: "Game over", lines: [`Score ${score} · round ${round}`] };
+    }
     if (this._handTicks > 0) {
       return { lines: [this._hand ? "You play. T hands back." : `${this._agent.name} plays.`] };
     }
