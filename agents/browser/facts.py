@@ -1,6 +1,7 @@
 """What the page takes from the game for windows: tones, times, and what is what."""
 
 from base64 import b64encode
+from collections.abc import Sequence
 from typing import Any
 
 from ...envs.draw.png import png_bytes
@@ -14,9 +15,11 @@ from ...envs.play.things import (
     CAPSULE_THINGS,
     ENEMY_THINGS,
     SHARD_THING,
+    Thing,
     draw_icon,
     draw_things,
 )
+from ...envs.rules import BRICK_LETTERS
 
 _SCALE = 24  # CSS pixels per brick width, in pictures of things
 _DENSITY = 2  # pixels of a picture per CSS pixel
@@ -33,7 +36,6 @@ _THINGS = (
 
 def page_facts() -> dict[str, Any]:
     """Return what the page's modules find in the element of this name, for `json.dumps`."""
-    pictures, _ = draw_things(_THINGS, _DENSITY * _SCALE)
     return {
         "steps": STEPS,
         "sitting": {"over": OVER_TICKS, "title": TITLE_TICKS, "warning": WARNING_TICKS},
@@ -44,16 +46,26 @@ def page_facts() -> dict[str, Any]:
             "counted": {field: tone.name for field, tone in COUNTED.items()},
             "paddleReach": PADDLE_REACH,
         },
-        "things": [
-            {
-                "name": thing.name,
-                "meaning": thing.meaning,
-                "picture": _as_text(png_bytes(picture)),
-                "width": picture.shape[1] / _DENSITY,
-            }
-            for thing, picture in zip(_THINGS, pictures, strict=True)
+        "things": _describe(_THINGS),
+        "bricks": [
+            {"letter": letter, **described}
+            for letter, described in zip(BRICK_LETTERS[1:], _describe(BRICK_THINGS), strict=True)
         ],
     }
+
+
+def _describe(things: Sequence[Thing]) -> list[dict[str, Any]]:
+    """Return the names, meanings and pictures of things."""
+    pictures, _ = draw_things(things, _DENSITY * _SCALE)
+    return [
+        {
+            "name": thing.name,
+            "meaning": thing.meaning,
+            "picture": _as_text(png_bytes(picture)),
+            "width": picture.shape[1] / _DENSITY,
+        }
+        for thing, picture in zip(things, pictures, strict=True)
+    ]
 
 
 def page_icon() -> str:

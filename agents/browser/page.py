@@ -20,7 +20,7 @@ from ...envs.config import MOST_DECISIONS, Config
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
-_PARTS = {"play": "Play", "watch": "Watch", "replay": "Replay"}
+_PARTS = {"play": "Play", "watch": "Watch", "replay": "Replay", "editor": "Editor"}
 # Of `browser_games`: those that people play, and those that agents were trained in.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
@@ -91,7 +91,7 @@ def _fill(template: str, values: dict[str, str]) -> str:
 
 
 def _read(name: str) -> str:
-    return (resources.files(__package__) / "page" / name).read_text(encoding="utf-8")
+    return (resources.files(__package__) / "markup" / name).read_text(encoding="utf-8")
 
 
 def _panel(name: str) -> str:
@@ -100,7 +100,7 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), resources.files(__package__) / "page")
+    folders = (resources.files(machine_room), resources.files(__package__) / "modules")
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
         for folder in folders

@@ -15,6 +15,9 @@ import { Meeting } from "./meeting.js";
  * @property {number | null} [difficulty] of all generated levels; null: as the game says
  */
 
+// More than these sizes are drawn anew each time. A page that is resized needs many, one by one.
+const MOST_PICTURES = 4;
+
 /**
  * Compile the module.
  * @param {BufferSource | WebAssembly.Module} code of the module
@@ -156,7 +159,8 @@ export class Game {
     this._count = this.commands?.length ?? 0;
     this._fresh = this._bytes("World", at.world).slice();
     this._run("forget");
-    this._pictures = new Map();
+    this._pictures = new Map(); // by size, the latest last
+    this._blocks = []; // memory of earlier pictures: address and length
   }
 
   /**
@@ -249,8 +253,10 @@ export class Game {
    */
   draw(width, height, channels = 4) {
     const key = `${width} ${height} ${channels}`;
-    if (!this._pictures.has(key)) this._pictures.set(key, this._picture(width, height, channels));
-    const { $address, memory } = this._pictures.get(key);
+    const picture = this._pictures.get(key) ?? this._picture(width, height, channels);
+    this._pictures.delete(key);
+    this._pictures.set(key, picture);
+    const { $address, memory } = picture;
     this.machine.kernels.draw(0, $address);
     return new Uint8ClampedArray(this.machine.memory.buffer, memory, width * height * channels);
   }
@@ -335,17 +341,34 @@ export class Game {
     return fields;
   }
 
-  /** Return the record of a new picture. */
+  /** Return a new picture, in place of the one that was not drawn for the longest time. */
   _picture(width, height, channels) {
     const { machine } = this;
-    const { records } = machine.manifest;
-    const picture = machine.record("Picture");
-    const pattern = machine.bytes(this._image.addresses.picture, records.Picture.length);
+    let picture;
+    if (this._pictures.size < MOST_PICTURES) {
+      picture = machine.record("Picture");
+    } else {
+      const [[oldest, record]] = this._pictures;
+      this._pictures.delete(oldest);
+      picture = record;
+      this._blocks.push(picture.block);
+    }
+    const pattern = machine.bytes(this.address("picture"), machine.manifest.records.Picture.length);
     machine.bytes(picture.$address, pattern.length).set(pattern);
     Object.assign(picture, { width, height, channels });
     machine.kernels.measure(0, picture.$address);
-    picture.memory = machine.reserve(picture.length);
+    picture.block = this._block(picture.length);
+    picture.memory = picture.block.address;
     machine.kernels.begin(0, picture.$address);
     return picture;
+  }
+
+  /** Return memory of a length or more: what an earlier picture had, or new memory. */
+  _block(needed) {
+    const fits = this._blocks.findIndex(({ length }) => length >= needed);
+    if (fits >= 0) return this._blocks.splice(fits, 1)[0];
+    // A page that grows soon needs more.
+    const length = Math.ceil(1.5 * needed);
+    return { address: this.machine.reserve(length), length };
   }
 }

@@ -130,6 +130,19 @@ const works = {
     return [first, onward()];
   },
 
+  /** Draw in many sizes, as a page that is resized does, and return how memory grows. */
+  async resize({ sizes }) {
+    const game = await arkanoid.open("full");
+    game.reset({ seed: 1 });
+    const grown = [];
+    let drawn;
+    for (let time = 0; time < 3; time++) {
+      for (const [height, width] of sizes) drawn = game.draw(width, height);
+      grown.push(game.machine.memory.buffer.byteLength);
+    }
+    return { grown, digest: createHash("sha256").update(drawn).digest("hex") };
+  },
+
   /** Read numbers of a game by their names. */
   async names() {
     const game = await arkanoid.open("full");

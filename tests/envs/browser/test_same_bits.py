@@ -21,6 +21,8 @@ from arkanoid.envs.browser.entries import ENTRIES
 from arkanoid.envs.browser.manifest import browser_games, make_manifest
 from arkanoid.envs.config import Config
 from arkanoid.envs.draw.picture import draw_world
+from arkanoid.envs.draw.scenery import LOOKS, lattice_size
+from arkanoid.envs.draw.view import make_view
 from arkanoid.envs.game.rulebook import make_rules
 from arkanoid.envs.levels.clearability import unreachable_bricks
 from arkanoid.envs.levels.files import CAMPAIGN
@@ -44,6 +46,7 @@ MOST_BYTES = 700_000
 ALL = np.ones(1, np.bool_)
 # Height, width and channels: of agents, of people with and without a score line, and odd ones.
 SIZES = ((84, 84, 1), (84, 84, 3), (210, 160, 3), (256, 192, 4), (31, 97, 4), (1, 1, 3))
+RESIZED = [[size, size * 3 // 4] for size in (*range(40, 400, 6), *range(400, 40, -6))]
 PART = 250  # decisions that share a digest
 # Games in which something is otherwise than in those of the page.
 OTHERS = {
@@ -216,6 +219,7 @@ def jobs() -> dict:
             "game": "everything",
             "actions": random_actions(GAMES["everything"], 100, 7),
         },
+        "resize": {"work": "resize", "sizes": RESIZED},
         "names": {"work": "names"},
         "mistakes": {
             "work": "mistakes",
@@ -300,6 +304,21 @@ def test_bricks_that_no_ball_can_reach(done: dict) -> None:
 def test_a_restored_state_goes_on_as_before(done: dict) -> None:
     first, again = done["restore"]
     assert first == again
+
+
+def test_a_page_that_is_resized_takes_no_more_and_more_memory(done: dict) -> None:
+    """Each size took memory of its own, which nobody gave back."""
+    found = done["resize"]
+    _, second, third = found["grown"]
+    height, width = max(RESIZED)
+    rows, columns = lattice_size(make_view(height, width)[0])
+    largest = 4 * (2 * height * width + LOOKS * rows * columns)
+    # All sizes together would take 23 times as much as the largest one.
+    assert second == third < 16 * largest
+    batch = Batch(1, GAMES["full"])
+    batch.reset(ALL, None, [1])
+    drawn = picture(batch, *RESIZED[-1], 4)
+    assert found["digest"] == hashlib.sha256(drawn.tobytes()).hexdigest()
 
 
 def test_fields_have_their_names(done: dict) -> None:

@@ -78,6 +78,12 @@ export class Play {
     this._controls.point(x);
   }
 
+  /** Lay out a game with a level of the editor. */
+  offer(level) {
+    this._form.offer(level);
+    this._layOut();
+  }
+
   restart() {
     this._ask("restart");
   }

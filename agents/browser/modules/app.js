@@ -4,6 +4,7 @@ import { loadArkanoid } from "arkanoid/game";
 import { Clock } from "arkanoid/clock";
 import { FIELD_KEYS, KEYS } from "arkanoid/controls";
 import { bytesOf, jsonOf } from "arkanoid/data";
+import { Editor } from "arkanoid/editor";
 import { Play } from "arkanoid/play";
 import { Scores } from "arkanoid/scores";
 import { Speaker } from "arkanoid/sound";
@@ -12,7 +13,7 @@ import { Viewer } from "arkanoid/viewer";
 import { Watch } from "arkanoid/watch";
 
 /** What the page consists of, by the addresses of its parts: #play. */
-const PARTS = { play: Play, watch: Watch, replay: Viewer };
+const PARTS = { play: Play, watch: Watch, replay: Viewer, editor: Editor };
 
 class App {
   constructor(arkanoid, facts) {
@@ -36,6 +37,13 @@ class App {
     return this._parts.play?.recorded;
   }
 
+  /** Play a level of the editor. */
+  async playLevel(level) {
+    await this._go("play");
+    this.part.offer(level);
+    this.stage.focus();
+  }
+
   /** Tell those who can't see. */
   say(text) {
     document.getElementById("said").textContent = text;
@@ -55,6 +63,7 @@ class App {
     this.part = part;
     await part.enter();
     this.stage.sheet();
+    document.querySelector(".bar").hidden = Boolean(part.still);
     this.stage.offerStrip(part.steers !== null);
     this.stage.stale = true;
   }
@@ -118,7 +127,7 @@ class App {
       const key = this._meaning(event);
       if (!key) return;
       event.preventDefault();
-      if (!event.repeat) this.press(key);
+      if (!event.repeat || this.part?.keys) this.press(key);
     });
     addEventListener("keyup", (event) => this.part?.release(meaningOf(event)));
     for (const id of ["pause", "once", "slower", "faster", "sound", "full"]) {
@@ -144,18 +153,25 @@ class App {
     event.preventDefault();
     const [file] = event.dataTransfer.files;
     if (!file) return;
-    if (location.hash !== "#replay") {
-      history.pushState(null, "", "#replay");
-      await this.show("replay");
-    }
+    await this._go(file.name.endsWith(".txt") ? "editor" : "replay");
     await this.part.dropped(file);
+  }
+
+  /** Go to a part of the page. */
+  async _go(name) {
+    if (this.part === this._parts[name]) return;
+    history.pushState(null, "", `#${name}`);
+    await this.show(name);
   }
 
   /** @returns {string | undefined} what a key means where the focus is */
   _meaning(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return undefined;
     const { target } = event;
-    if (target.closest("input, select, textarea")) return undefined;
+    if (event.altKey || target.closest("input:not([type=checkbox]), select, textarea")) return undefined;
+    if (event.key === " " && target.closest("input")) return undefined;
+    const own = this.part?.keys;
+    if (own && Object.hasOwn(own, wordOf(event))) return own[wordOf(event)];
+    if (event.ctrlKey || event.metaKey) return undefined;
     if (event.key === " " && target.closest("button, a, summary")) return undefined;
     const onField = target === this.stage.canvas;
     return meaningOf(event) ?? (onField ? FIELD_KEYS[event.key] : undefined);
@@ -164,6 +180,13 @@ class App {
 
 function meaningOf({ key }) {
   return KEYS[key.length === 1 ? key.toLowerCase() : key];
+}
+
+/** @returns {string} a key with those that are held: Ctrl+z */
+function wordOf({ key, ctrlKey, metaKey, shiftKey }) {
+  const plain = key.length === 1 ? key.toLowerCase() : key;
+  if (!(ctrlKey || metaKey)) return plain;
+  return `Ctrl+${shiftKey ? "Shift+" : ""}${plain}`;
 }
 
 function partOf(hash) {

@@ -68,10 +68,22 @@ export class StartForm {
   /** @returns {object} how the game begins, for `Game.reset`, without a seed */
   get options() {
     const { value } = this._level;
+    if (value === "own") {
+      const { enemies } = this._manifest.games[this.choice.game].config;
+      return { bricks: this._own.bricks, boss: this._own.boss && enemies };
+    }
     if (value !== "generated") return value === "1" ? {} : { level: Number(value) };
     const typed = Math.trunc(Number(this._seed.value));
     const levelSeed = Math.min(MOST_SEED, Math.max(0, typed || 0));
     return { levelSeed, repeat: true, difficulty: Number(this._difficulty.value) };
+  }
+
+  /** Offer a level of the editor, and choose it. */
+  offer(level) {
+    this._own = level;
+    this._fill();
+    this._level.value = "own";
+    this._fill(false);
   }
 
   /** Choose the round after another one. */
@@ -116,7 +128,8 @@ export class StartForm {
     if (!names.length) rounds.push(make("option", { value: "1" }, "As in the training"));
     const group = make("optgroup", { label: "The rounds" }, ...rounds);
     const generated = make("option", { value: "generated" }, "A generated level");
-    this._level.replaceChildren(group, generated);
+    const own = this._own ? [make("option", { value: "own" }, "Your level")] : [];
+    this._level.replaceChildren(...own, group, generated);
     if (before) this._level.value = before;
     if (this._level.selectedIndex < 0) this._level.selectedIndex = 0;
   }
