@@ -20,7 +20,13 @@ from ...envs.config import MOST_DECISIONS, Config
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
-_PARTS = {"play": "Play", "watch": "Watch", "replay": "Replay", "editor": "Editor"}
+_PARTS = {
+    "play": "Play",
+    "watch": "Watch",
+    "replay": "Replay",
+    "editor": "Editor",
+    "collide": "Collide",
+}
 # Of `browser_games`: those that people play, and those that agents were trained in.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
@@ -68,6 +74,7 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
             "icon": page_icon(),
             "style": _read("style.css"),
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
+            "scene": _read("scene.html"),
             "panels": "\n".join(map(_panel, _PARTS)),
             "imports": json.dumps({"imports": _imports()}),
             "data": "\n".join(_data(name, content) for name, content in data.items()),
@@ -100,7 +107,8 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), resources.files(__package__) / "modules")
+    here = resources.files(__package__)
+    folders = (resources.files(machine_room), here / "modules", here / "collisions")
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
         for folder in folders

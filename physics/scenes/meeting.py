@@ -9,7 +9,7 @@ from ..kernels import kernel
 from ..kernels.portable import array_at
 from ..pairs.response import bounce_velocities, shares
 from ..pairs.table import ALGORITHM, contact_between, impact_between
-from ..pairs.touching import touch_margins
+from ..pairs.touching import margin_along, touch_margins
 from ..pairs.touching_point import touching_point
 from ..shapes.records import Edge, Edges, Shape, Shapes
 from .patterns import TURNS
@@ -63,6 +63,10 @@ def _touch(meeting: Any, a: Any, b: Any, shapes: Shapes, edges: Edges) -> None:
     meeting.time = time
     meeting.impact_normal_x = normal_x
     meeting.impact_normal_y = normal_y
+    meeting.touching = 0
+    if time < math.inf:
+        way = time * ((a.vx - b.vx) * normal_x + (a.vy - b.vy) * normal_y)
+        meeting.touching = 1 if way <= margin_along(normal_x, normal_y, margin_x, margin_y) else 0
 
 
 @kernel

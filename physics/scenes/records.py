@@ -53,6 +53,7 @@ Meeting = record_dtype(
         ("point_x", np.float64),
         ("point_y", np.float64),
         ("time", np.float64),  # of impact; inf: never
+        ("touching", np.int64),  # whether that is now, up to the margins of touching
         ("impact_normal_x", np.float64),
         ("impact_normal_y", np.float64),
         ("impact_point_x", np.float64),  # where they touch at that time

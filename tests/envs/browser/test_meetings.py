@@ -220,6 +220,7 @@ def test_the_answers_are_those_of_the_functions() -> None:
         assert record["time"] == (math.inf if impact is None else impact.time)
         if impact is not None:
             seen["impact"] += impact.time > 0
+            assert record["touching"] or impact.time > 0
             assert (record["impact_normal_x"], record["impact_normal_y"]) == tuple(impact.normal)
             if impact.normal.any():
                 assert record["impulse"] == pytest.approx(bounce(a, b, impact.normal), abs=1e-14)
