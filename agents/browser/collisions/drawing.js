@@ -25,7 +25,10 @@ export class Drawing {
       event.preventDefault();
       event.stopPropagation();
     });
-    this._svg.addEventListener("focusin", ({ target }) => target.dataset?.side && this._react.choose(target.dataset.side));
+    // A picture that listens to the focus itself would take it, too.
+    this._svg.parentElement.addEventListener("focusin", ({ target }) => {
+      if (target.dataset.side) this._react.choose(target.dataset.side);
+    });
   }
 
   focus(side) {
