@@ -54,7 +54,7 @@ export class Drawing {
         ghosts.push(ghost(side, said, said.impact_x, said.impact_y, "impact"));
         parts.push(line("way", side, said.x, said.y, said.impact_x, said.impact_y));
       }
-      if (record.impulse !== 0) {
+      if (record.impulse !== 0 && (said.bounced_vx || said.bounced_vy)) {
         parts.push(arrow("bounced", side, said.impact_x, said.impact_y, said.bounced_vx, said.bounced_vy));
       }
     }
