@@ -1,5 +1,6 @@
 """The page that shows the game and its agents in browsers, as one file; and its server."""
 
-from .page import BrowserAgent, make_page
+from .agents import BrowserAgent, browser_agent
+from .page import make_page
 
-__all__ = ["BrowserAgent", "make_page"]
+__all__ = ["BrowserAgent", "browser_agent", "make_page"]

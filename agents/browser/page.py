@@ -11,12 +11,13 @@ from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
 from importlib import resources
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...envs import browser as machine_room
 from ...envs.browser.manifest import browser_games, by_tick, make_manifest
 from ...envs.browser.shipped import game_module
 from ...envs.config import MOST_DECISIONS, Config
+from .agents import BrowserAgent
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
@@ -35,25 +36,12 @@ _RELATIVE = re.compile(r'(?<=from )"\./(\w+)\.js"')
 _PREFIX = "arkanoid/"
 
 
-class BrowserAgent(NamedTuple):
-    """An agent that the page shows.
-
-    Attributes:
-        name: shown, and unique on the page.
-        config: of the game that it plays.
-        network: the file of `portable_network`.
-    """
-
-    name: str
-    config: Config
-    network: bytes
-
-
-def make_page(agents: Sequence[BrowserAgent]) -> str:
+def make_page(agents: Sequence[BrowserAgent], opens: str = "play") -> str:
     """Return the page, as HTML.
 
     Args:
         agents: which can be watched, the first one at first.
+        opens: which of its parts is shown where the address names none: ``"watch"``, say.
 
     Raises:
         ImportError: there is no linker for WebAssembly.
@@ -72,6 +60,7 @@ def make_page(agents: Sequence[BrowserAgent]) -> str:
         _read("index.html"),
         {
             "icon": page_icon(),
+            "opens": opens,
             "style": _read("style.css"),
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
             "scene": _read("scene.html"),
@@ -98,7 +87,7 @@ def _fill(template: str, values: dict[str, str]) -> str:
 
 
 def _read(name: str) -> str:
-    return (resources.files(__package__) / "markup" / name).read_text(encoding="utf-8")
+    return (resources.files(str(__package__)) / "markup" / name).read_text(encoding="utf-8")
 
 
 def _panel(name: str) -> str:
@@ -107,7 +96,7 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    here = resources.files(__package__)
+    here = resources.files(str(__package__))
     folders = (resources.files(machine_room), here / "modules", here / "collisions")
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)

@@ -35,8 +35,6 @@ class PageServer(ThreadingHTTPServer):
 
 
 class _Handler(BaseHTTPRequestHandler):
-    server: PageServer
-
     def do_GET(self) -> None:
         """Send the page."""
         self._send(with_content=True)
@@ -45,18 +43,20 @@ class _Handler(BaseHTTPRequestHandler):
         """Send what would stand before the page."""
         self._send(with_content=False)
 
-    def log_message(self, *_: Any) -> None:
+    def log_message(self, format: str, *args: Any) -> None:  # noqa: A002
         """Print nothing: the terminal shows the address."""
 
     def _send(self, with_content: bool) -> None:
+        assert isinstance(self.server, PageServer)
+        content = self.server.content
         if self.path.partition("?")[0] != "/":
             self.send_error(404)
             return
         self.send_response(200)
         self.send_header("Content-Type", "text/html; charset=utf-8")
-        self.send_header("Content-Length", str(len(self.server.content)))
+        self.send_header("Content-Length", str(len(content)))
         self.send_header("Content-Security-Policy", _POLICY)
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
         if with_content:
-            self.wfile.write(self.server.content)
+            self.wfile.write(content)

@@ -44,11 +44,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
             f"(`{arkanoid('evaluate')}` compares different ones)"
         )
     from ..show.page import write_page
-    from ..show.report import describe_agent
+    from ..show.report import describe_agent, show_alive
 
     facts, pictures = describe_agent(models, overrides)
+    alive = show_alive(models[0], overrides) if out.suffix.lower() == ".html" else ""
     try:
-        write_page(out, facts, pictures)
+        write_page(out, facts, pictures, alive)
     except OSError as error:
         raise SettingsError(f"{out}: cannot be written: {error}") from None
     print(out)

@@ -91,10 +91,9 @@ def _agent(name: str, trust: bool) -> "BrowserAgent":
 
     model = ModelFile.find(name, trust)
     experiment = model.experiment([])
-    from ..browser import BrowserAgent
-    from ..learn.portable import portable_network
+    from ..browser import browser_agent
 
-    return BrowserAgent(experiment.name, experiment.game, portable_network(model, experiment))
+    return browser_agent(model, experiment)
 
 
 def _serve(page: str, port: int, opens: bool) -> int:

@@ -30,19 +30,20 @@ class Markdown(str):
     """Text that is Markdown already."""
 
 
-def write_page(path: Path, facts: Mapping[str, Any], pictures: Pictures) -> None:
+def write_page(path: Path, facts: Mapping[str, Any], pictures: Pictures, alive: str = "") -> None:
     """Write a page as HTML with its pictures inside, or as Markdown with a folder of pictures.
 
     Args:
         path: of the page, ``.html`` or ``.md``; the folder beside it has its name without suffix.
         facts: what the template ``report.md.jinja`` shows.
         pictures: the files that it refers to.
+        alive: another page, HTML, which HTML shows in a frame at the end.
 
     Raises:
         OSError: a file cannot be written.
     """
     if path.suffix.lower() == ".html":
-        write_atomically(path, as_html(facts, pictures).encode())
+        write_atomically(path, as_html(facts, pictures, alive).encode())
         return
     folder = path.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
@@ -52,14 +53,15 @@ def write_page(path: Path, facts: Mapping[str, Any], pictures: Pictures) -> None
     write_atomically(path, as_markdown(facts, sources).encode())
 
 
-def as_html(facts: Mapping[str, Any], pictures: Pictures) -> str:
-    """Return the page as HTML that needs no other file."""
+def as_html(facts: Mapping[str, Any], pictures: Pictures, alive: str = "") -> str:
+    """Return the page as HTML that needs no other file; see `write_page`."""
     sources = {name: _data_uri(name, content) for name, content in pictures.items()}
     # Without "html", tags inside Markdown are text.
     renderer = MarkdownIt("commonmark", {"html": False, "xhtmlOut": False}).enable("table")
     body = renderer.render(as_markdown(facts, sources))
     template = _templates(autoescape=True).get_template("page.html.jinja")
-    return template.render(title=printable(f"Arkanoid: {facts['name']}"), body=Markup(body)) + "\n"
+    title = printable(f"Arkanoid: {facts['name']}")
+    return template.render(title=title, body=Markup(body), alive=alive) + "\n"
 
 
 def as_markdown(facts: Mapping[str, Any], sources: Mapping[str, str]) -> str:

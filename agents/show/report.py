@@ -8,6 +8,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from ..browser import browser_agent, make_page
+from ..experiment.errors import SettingsError
 from ..experiment.lineage import describe_lineage
 from ..experiment.reading import to_toml
 from ..experiment.runs import ModelFile
@@ -67,6 +69,17 @@ def describe_agent(
         "settings": to_toml(models[0].run.experiment()),
     }
     return facts, pictures
+
+
+def show_alive(model: ModelFile, overrides: list[tuple[str, str]]) -> str:
+    """Return a page on which the agent plays, HTML; an empty text if no browser can show it.
+
+    It is of agents whose network has a kernel, and where the game can be made for browsers.
+    """
+    try:
+        return make_page([browser_agent(model, model.run.experiment(overrides))], opens="watch")
+    except (SettingsError, ImportError):
+        return ""
 
 
 def _model_row(model: ModelFile) -> list[object]:

@@ -2,6 +2,7 @@
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from arkanoid.agents import cli
@@ -45,3 +46,20 @@ def sentence(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     *_, error = capsys.readouterr().err.splitlines()
     assert error.startswith("arkanoid: error: ")
     return error
+
+
+def facts_with(name: str) -> dict[str, Any]:
+    """Return a report's facts with a name wherever somebody else chooses the text."""
+    return {
+        "name": name,
+        "env_id": name,
+        "inputs": "vector",
+        "training_levels": [name],
+        "timesteps": 1,
+        "models": [[name, 0, name, 1, "1 min", name, "abc"]],
+        "origin": [[name, name]],
+        "lineages": [name],
+        "curves": 0,
+        "suites": [{"name": "x", "heading": name, "summaries": [[["a"], [name]]], "levels": []}],
+        "settings": f"name = {name}\n```\n# {name}",
+    }

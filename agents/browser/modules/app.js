@@ -25,6 +25,8 @@ class App {
     this.scores = new Scores();
     this.clock = new Clock();
     this._parts = {};
+    // Some telephones fill the screen with films only.
+    document.getElementById("full").hidden = !document.fullscreenEnabled;
     this._button = (id) => document.getElementById(id);
   }
 
@@ -140,8 +142,7 @@ class App {
         if (event.detail > 0) this.stage.focus();
       };
     }
-    addEventListener("blur", () => this.part?.leave());
-    document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
+    addEventListener("blur", () => this.part?.loseFocus?.());
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => this._drop(event));
     this.stage.listen({
@@ -195,7 +196,7 @@ function wordOf({ key, ctrlKey, metaKey, shiftKey }) {
 
 function partOf(hash) {
   const [name] = hash.slice(1).split("?");
-  return Object.hasOwn(PARTS, name) ? name : Object.keys(PARTS)[0];
+  return Object.hasOwn(PARTS, name) ? name : document.body.dataset.opens;
 }
 
 function write(element, text) {

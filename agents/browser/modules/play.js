@@ -62,6 +62,11 @@ export class Play {
     if (this.runs) this._enter("paused");
   }
 
+  /** Pause: the player looks elsewhere. */
+  loseFocus() {
+    this.leave();
+  }
+
   press(key) {
     if (key === "restart" || key === "next") this._ask(key);
     else if (key === "pause") this.runs ? this._enter("paused") : this._goOn();

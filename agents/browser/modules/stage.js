@@ -6,6 +6,7 @@ const NARROW = matchMedia("(max-width: 52rem)");
 const MOST_SCALE = 120; // device pixels per brick width
 const LEAST_SCALE = 8;
 const PANEL = 21 * 16 + 32; // CSS pixels beside the picture: the panel and the gap
+const LEAST_HEIGHT = 416; // CSS pixels; where less is visible, one scrolls
 const SETTLED = 120; // milliseconds after which a window has its new size
 const TAP = { seconds: 0.3, way: 10 }; // CSS pixels
 
@@ -62,9 +63,11 @@ export class Stage {
   /** @returns {[number, number]} the CSS pixels that the picture may take */
   _room() {
     if (document.fullscreenElement) return [innerWidth, innerHeight];
-    const { clientWidth } = document.documentElement;
+    const { clientWidth } = document.body; // without the bar for scrolling
     const bars = document.querySelector(".top").offsetHeight + 60;
-    if (!NARROW.matches) return [clientWidth - PANEL - 32, innerHeight - bars - 32];
+    if (!NARROW.matches) {
+      return [clientWidth - PANEL - 32, Math.max(LEAST_HEIGHT, innerHeight - bars - 32)];
+    }
     const strip = this._strip.offsetHeight;
     return [clientWidth, innerHeight - bars - (strip && strip + 8) - 8];
   }

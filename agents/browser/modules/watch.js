@@ -65,6 +65,11 @@ export class Watch {
     if (this.runs) this.phase = "paused";
   }
 
+  /** Pause if the player steers; agents go on. */
+  loseFocus() {
+    if (this._hand && this.phase === "playing") this._pause();
+  }
+
   press(key) {
     if (key === "pause" || (key === "fire" && !(this._hand && this.runs))) this._pause();
     else if (key === "once") this._once();

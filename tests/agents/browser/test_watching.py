@@ -11,10 +11,14 @@ from urllib.error import HTTPError
 from urllib.request import urlopen
 
 import pytest
+from arkanoid.agents.browser import page as page_module
 from arkanoid.agents.cli import main
+from arkanoid.agents.experiment.runs import ModelFile
+from arkanoid.agents.show.page import as_html
+from arkanoid.agents.show.report import show_alive
 from helpers.browser import DESKTOP, visit, wait_until
 from helpers.processes import ARKANOID
-from helpers.runs import packaged_copy
+from helpers.runs import facts_with, packaged_copy
 
 # A whole game, decision by decision and tick by tick: what it looks like in the end.
 BOTH_WAYS = """async (name) => {
@@ -131,3 +135,45 @@ def test_ones_own_agent(browser: Any, folder: Path) -> None:
         assert page.evaluate("arkanoid.part._agent.name") == "mine"
         names = page.locator("#panel-watch .choice label").all_text_contents()
         assert names == ["mine", "full", "lite"]
+
+
+def test_a_report_shows_its_agent_at_play(browser: Any, folder: Path) -> None:
+    """It stands in a frame, whose scripts can reach nothing else."""
+    file = folder / "report.html"
+    alive = show_alive(ModelFile.find("lite", False), [])
+    report = as_html(facts_with("lite"), {"x.png": b"", "play.gif": b""}, alive)
+    file.write_text(report, encoding="utf-8")
+    faults: list[str] = []
+    page = browser.new_page()
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto(file.as_uri())
+    # What nobody sees stands still.
+    page.locator("iframe").scroll_into_view_if_needed()
+    inside = page.frame_locator("iframe")
+    inside.locator("#chances .chosen").wait_for()
+    assert inside.locator("#panel-watch .choice label").all_text_contents() == ["lite"]
+    inside.get_by_role("button", name="Take over").click()
+    inside.get_by_role("button", name="Hand back").wait_for()
+    assert faults == []
+    page.close()
+
+
+def test_a_port_that_is_taken(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    port = address.rstrip("/").rpartition(":")[2]
+    assert main(["web", "--no-open", "--port", port]) == 2
+    assert f"127.0.0.1:{port} cannot be served" in capsys.readouterr().err
+
+
+def test_without_a_linker_there_is_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Where the module did not come with the package and cannot be made."""
+
+    def fail() -> bytes:
+        raise ImportError("to make the game for browsers needs the linker wasm-ld")
+
+    monkeypatch.setattr(page_module, "game_module", fail)
+    assert main(["web", "--out", str(tmp_path / "game.html")]) == 2
+    assert "needs the linker wasm-ld" in capsys.readouterr().err
+    # A report only lacks the agent at play.
+    assert show_alive(ModelFile.find("lite", False), []) == ""

@@ -6,7 +6,6 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -29,7 +28,7 @@ from arkanoid.agents.show.frames import can_be_smooth, frame_rate, play_frames
 from arkanoid.agents.show.page import as_html, code, escape, table, write_page
 from arkanoid.agents.show.plots import as_png, mean_curve, plot_levels, plot_policies
 from helpers.repository import ROOT
-from helpers.runs import packaged_copy
+from helpers.runs import facts_with, packaged_copy
 from imageio_ffmpeg import count_frames_and_secs
 from matplotlib.text import Text
 from PIL import Image
@@ -246,7 +245,10 @@ def test_a_report_is_one_page_that_needs_no_other_file(runs: list[str], tmp_path
     # Curves, policies of both suites, levels of the named one, and the film.
     assert page.tags.count("img") == 5
     assert all(source.startswith("data:image/") for source in page.sources)
-    assert "http" not in text
+    assert "http:" not in text
+    assert "https:" not in text
+    # The agent at play.
+    assert page.tags.count("iframe") == 1
     assert page.tags.count("table") == 7
     for word in ("switchback", "planner", "interquartile", "learning_rate = 0.002", "2 training"):
         assert word in text
@@ -277,23 +279,6 @@ HOSTILE = [
     "&amp; \\| \\",
     "two\n\n# lines",
 ]
-
-
-def facts_with(name: str) -> dict[str, Any]:
-    """Return a report's facts with a name wherever somebody else chooses the text."""
-    return {
-        "name": name,
-        "env_id": name,
-        "inputs": "vector",
-        "training_levels": [name],
-        "timesteps": 1,
-        "models": [[name, 0, name, 1, "1 min", name, "abc"]],
-        "origin": [[name, name]],
-        "lineages": [name],
-        "curves": 0,
-        "suites": [{"name": "x", "heading": name, "summaries": [[["a"], [name]]], "levels": []}],
-        "settings": f"name = {name}\n```\n# {name}",
-    }
 
 
 @pytest.mark.parametrize("name", HOSTILE)
