@@ -15,8 +15,8 @@ import { Meeting } from "./meeting.js";
  * @property {number | null} [difficulty] of all generated levels; null: as the game says
  */
 
-// More than these sizes are drawn anew each time. A page that is resized needs many, one by one.
-const MOST_PICTURES = 4;
+// How many sizes are kept. Drawing what does not change takes a hundred times as long as the rest.
+const MOST_PICTURES = 8;
 
 /**
  * Compile the module.

@@ -41,7 +41,8 @@ function readPart(name, word, usual) {
 /** @returns {object} the bodies that an address holds: a, b, both or none */
 export function readScene(hash) {
   const given = new URLSearchParams(hash.split("?")[1] ?? "");
-  return Object.fromEntries(["a", "b"].filter((side) => given.has(side)).map((side) => [side, readBody(given.get(side))]));
+  const sides = ["a", "b"].filter((side) => given.has(side));
+  return Object.fromEntries(sides.map((side) => [side, readBody(given.get(side))]));
 }
 
 /** @returns {string} what an address holds of the bodies */

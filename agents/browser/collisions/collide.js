@@ -30,7 +30,10 @@ export class Collide {
       press: (event, side, isTip) => this._press(event, side, isTip),
     });
     const { polygons } = app.arkanoid.manifest.meetings;
-    this.form = new Form(polygons, (side) => this.choose(side), (changes) => this.change(this.side, changes));
+    this.form = new Form(polygons, {
+      choose: (side) => this.choose(side),
+      change: (changes) => this.change(this.side, changes),
+    });
     this.sayings = new Sayings({
       relax: () => this._take((body, said) => ({ x: said.relaxed_x, y: said.relaxed_y })),
       fly: () => this._take((body, said) => ({ x: said.impact_x, y: said.impact_y })),
@@ -103,9 +106,14 @@ export class Collide {
     if (right === 0 && up === 0) return false;
     this.choose(side);
     const step = event.altKey ? 0.01 : 0.1;
-    if (isTip) this.change(side, { vx: rounded(body.vx + step * right), vy: rounded(body.vy + step * up) });
-    else if (!event.shiftKey) this.change(side, { x: rounded(body.x + step * right), y: rounded(body.y + step * up) });
-    else if (right) this.form.turn(-TURN * right);
+    const moved = (x, y) => [rounded(x + step * right), rounded(y + step * up)];
+    if (isTip) {
+      const [vx, vy] = moved(body.vx, body.vy);
+      this.change(side, { vx, vy });
+    } else if (!event.shiftKey) {
+      const [x, y] = moved(body.x, body.y);
+      this.change(side, { x, y });
+    } else if (right) this.form.turn(-TURN * right);
     else this.form.enlarge(up);
     return true;
   }

@@ -6,13 +6,15 @@ const WHOLE = { HalfPlane: true, AxisAlignedHalfPlane: true }; // below other bo
 
 /** The picture, and what pointers and keys do to it. */
 export class Drawing {
-  /** @param {object} react functions: choose(side), move(side, x, y), aim(side, vx, vy), press(event, side, isTip) */
+  /**
+   * @param {object} react functions: choose(side), move(side, x, y), aim(side, vx, vy), and
+   *   press(event, side, isTip)
+   */
   constructor(react) {
     this._react = react;
     this._svg = document.getElementById("collisions");
-    this._layers = Object.fromEntries(
-      ["regions", "ghosts", "marks", "handles"].map((name) => [name, this._svg.querySelector(`.${name}`)]),
-    );
+    const layer = (name) => [name, this._svg.querySelector(`.${name}`)];
+    this._layers = Object.fromEntries(["regions", "ghosts", "marks", "handles"].map(layer));
     this._bodies = Object.fromEntries(SIDES.map((side) => [side, this._makeBody(side)]));
     this._svg.addEventListener("pointerdown", (event) => this._grab(event));
     this._svg.addEventListener("pointermove", (event) => this._drag(event));
@@ -38,40 +40,58 @@ export class Drawing {
   /** Draw bodies and what is said of them. */
   show(bodies, record, chosen) {
     for (const side of SIDES) this._showBody(side, bodies[side], record[side], side === chosen);
-    const below = SIDES.find((side) => WHOLE[bodies[side].collider]);
-    const [first] = this._layers.regions.children;
-    if (below && first !== this._bodies[below].region && document.activeElement?.dataset?.side !== below) {
-      this._layers.regions.prepend(this._bodies[below].region);
-    }
-    const parts = [];
-    const ghosts = [];
+    this._sink(SIDES.find((side) => WHOLE[bodies[side].collider]));
     const separable = record.overlap && Number.isFinite(record.depth);
     const flies = Number.isFinite(record.time) && record.touching === 0;
+    const marks = [];
+    const ghosts = [];
     for (const side of SIDES) {
       const said = record[side];
-      if (separable && said.share > 0) ghosts.push(ghost(side, said, said.relaxed_x, said.relaxed_y, "relaxed"));
+      if (separable && said.share > 0) {
+        ghosts.push(ghost(side, said, said.relaxed_x, said.relaxed_y, "relaxed"));
+      }
       if (flies) {
         ghosts.push(ghost(side, said, said.impact_x, said.impact_y, "impact"));
-        parts.push(line("way", side, said.x, said.y, said.impact_x, said.impact_y));
+        marks.push(way(side, said));
       }
       if (record.impulse !== 0 && (said.bounced_vx || said.bounced_vy)) {
-        parts.push(arrow("bounced", side, said.impact_x, said.impact_y, said.bounced_vx, said.bounced_vy));
+        marks.push(bounced(side, said));
       }
     }
-    if (separable) parts.push(...normal(record.point_x, record.point_y, record.normal_x, record.normal_y, record.depth));
-    if (flies) parts.push(...normal(record.impact_point_x, record.impact_point_y, record.impact_normal_x, record.impact_normal_y, 0));
+    if (separable) {
+      const { point_x: x, point_y: y, normal_x: normalX, normal_y: normalY, depth } = record;
+      marks.push(...normal(x, y, normalX, normalY, depth));
+    }
+    if (flies) {
+      const { impact_point_x: x, impact_point_y: y } = record;
+      marks.push(...normal(x, y, record.impact_normal_x, record.impact_normal_y, 0));
+    }
     this._layers.ghosts.replaceChildren(...ghosts);
-    this._layers.marks.replaceChildren(...parts);
+    this._layers.marks.replaceChildren(...marks);
+  }
+
+  /** Put a body below the other one, unless that would take the focus from it. */
+  _sink(side) {
+    if (!side) return;
+    const { region } = this._bodies[side];
+    const isFree = !region.contains(document.activeElement);
+    if (isFree && this._layers.regions.firstElementChild !== region) {
+      this._layers.regions.prepend(region);
+    }
   }
 
   _makeBody(side) {
-    const region = make("g", { class: `body ${side}`, tabindex: 0, role: "group", "data-side": side });
+    const named = { tabindex: 0, role: "group", "data-side": side };
+    const region = make("g", { class: `body ${side}`, ...named });
     const velocity = make("line", { class: "velocity", "marker-end": `url(#tip-${side})` });
     const centre = make("circle", { class: "centre", r: 0.07, "data-side": side });
     const name = make("text", { transform: "scale(1 -1)", "data-side": side, y: -0.16, x: 0.12 });
     name.textContent = side;
-    const tip = make("g", { class: "tip", tabindex: 0, role: "group", "data-side": side, "data-tip": "" });
-    tip.append(make("circle", { class: "reach", r: 0.42 }), make("circle", { class: "knob", r: 0.13 }));
+    const tip = make("g", { class: "tip", ...named, "data-tip": "" });
+    tip.append(
+      make("circle", { class: "reach", r: 0.42 }),
+      make("circle", { class: "knob", r: 0.13 }),
+    );
     const place = make("g", { class: `handle ${side}` });
     place.append(velocity, centre, name, tip);
     this._layers.regions.append(region);
@@ -82,18 +102,21 @@ export class Drawing {
   _showBody(side, body, said, isChosen) {
     const { region, place, velocity, tip } = this._bodies[side];
     region.classList.toggle("chosen", isChosen);
-    region.setAttribute("aria-label", `Body ${side}, ${body.collider}, at ${body.x}, ${body.y}`);
+    const label = `Body ${side}, ${body.collider}, at ${body.x}, ${body.y}`;
+    region.setAttribute("aria-label", label);
     region.replaceChildren(outline(said));
     set(region, { transform: `translate(${body.x} ${body.y})` });
     set(place, { transform: `translate(${body.x} ${body.y})` });
-    set(velocity, { x2: body.vx, y2: body.vy, visibility: body.vx || body.vy ? "visible" : "hidden" });
+    const visibility = body.vx || body.vy ? "visible" : "hidden";
+    set(velocity, { x2: body.vx, y2: body.vy, visibility });
     set(tip, { transform: `translate(${body.vx} ${body.vy})` });
     tip.setAttribute("aria-label", `Velocity of ${side}: ${body.vx}, ${body.vy}`);
   }
 
   /** @returns {DOMPoint} where a pointer is, in the scene's unit */
   _place(event) {
-    return new DOMPoint(event.clientX, event.clientY).matrixTransform(this._layers.marks.getScreenCTM().inverse());
+    const toScene = this._layers.marks.getScreenCTM().inverse();
+    return new DOMPoint(event.clientX, event.clientY).matrixTransform(toScene);
   }
 
   _grab(event) {
@@ -132,22 +155,29 @@ function ghost(side, said, x, y, what) {
   return shown;
 }
 
-function line(what, side, x1, y1, x2, y2) {
-  return make("line", { class: `${what} ${side}`, x1, y1, x2, y2 });
+/** The way of a body to the impact. */
+function way(side, { x: x1, y: y1, impact_x: x2, impact_y: y2 }) {
+  return make("line", { class: `way ${side}`, x1, y1, x2, y2 });
 }
 
-function arrow(what, side, x, y, vx, vy) {
+/** The velocity of a body after the bounce. */
+function bounced(side, { impact_x: x, impact_y: y, bounced_vx: x2, bounced_vy: y2 }) {
   const transform = `translate(${x} ${y})`;
-  return make("line", { class: `${what} ${side}`, x2: vx, y2: vy, transform, "marker-end": "url(#tip-bounced)" });
+  const tip = "url(#tip-bounced)";
+  return make("line", { class: `bounced ${side}`, x2, y2, transform, "marker-end": tip });
 }
 
 /** The normal as an arrow of length 1 from a point, and the depth along it. */
 function normal(x, y, normalX, normalY, depth) {
   const transform = `matrix(${normalX} ${normalY} ${-normalY} ${normalX} ${x} ${y})`;
-  const parts = [];
-  if (normalX || normalY) parts.push(make("line", { class: "normal", x2: 1, transform, "marker-end": "url(#tip-normal)" }));
-  if (Number.isFinite(depth) && depth > 0) parts.push(make("line", { class: "depth", x1: -depth / 2, x2: depth / 2, transform }));
-  if (normalX || normalY) parts.push(make("circle", { class: "point", r: 0.07, transform }));
+  const tip = "url(#tip-normal)";
+  const parts = [
+    make("line", { class: "normal", x2: 1, transform, "marker-end": tip }),
+    make("circle", { class: "point", r: 0.07, transform }),
+  ];
+  if (depth > 0) {
+    parts.push(make("line", { class: "depth", x1: -depth / 2, x2: depth / 2, transform }));
+  }
   return parts;
 }
 

@@ -7,22 +7,23 @@ const MEASURES = {
   Particle: ["radius"], AxisAlignedRectangle: ["width", "height"], Rectangle: ["width", "height"],
   Convex: ["size"],
 };
-const TURNS = { HalfPlane: 1, AxisAlignedHalfPlane: 90, Rectangle: 1, Convex: 1 }; // steps in degrees
+// Steps in degrees.
+const TURNS = { HalfPlane: 1, AxisAlignedHalfPlane: 90, Rectangle: 1, Convex: 1 };
 const STEP = 0.1;
 
 export class Form {
   /**
    * @param {Record<string, number>} polygons how many edges each has
-   * @param {(side: string) => void} choose
-   * @param {(changes: object) => void} change of the body that is shown
+   * @param {object} react functions: choose(side), and change(changes) of the body that is shown
    */
-  constructor(polygons, choose, change) {
+  constructor(polygons, { choose, change }) {
     this._polygons = polygons;
     this._change = change;
     this._form = document.getElementById("body-form");
     this._fields = this._form.elements;
     this._fields.collider.append(...COLLIDERS.map((name) => make("option", {}, name)));
-    this._fields.polygon.append(...Object.keys(polygons).map((name) => make("option", {}, name)));
+    const names = Object.keys(polygons);
+    this._fields.polygon.append(...names.map((name) => make("option", {}, name)));
     this._open = document.getElementById("open-edges");
     this._form.onsubmit = (event) => event.preventDefault();
     this._form.oninput = ({ target }) => {
@@ -30,7 +31,9 @@ export class Form {
       else this._read(target);
     };
     // What can't be is put right when one goes on.
-    this._form.onchange = ({ target }) => target.type === "number" && this.show(this._side, this._body);
+    this._form.onchange = ({ target }) => {
+      if (target.type === "number") this.show(this._side, this._body);
+    };
     for (const button of this._form.querySelectorAll("[data-turn]")) {
       button.onclick = () => this.turn(Number(button.dataset.turn));
     }
@@ -60,21 +63,24 @@ export class Form {
     const { width, height, collider } = this._body;
     if (!MEASURES[collider]) return;
     const [low, high] = LIMITS.width;
-    const enlarged = (measure) => Math.max(low, Math.min(high, Math.round(100 * (measure + STEP * steps)) / 100));
+    const enlarged = (measure) => {
+      return Math.max(low, Math.min(high, Math.round(100 * (measure + STEP * steps)) / 100));
+    };
     this._change({ width: enlarged(width), height: enlarged(height) });
   }
 
   /** Hide the fields that this collider does not have. */
   _showWhatFits({ collider, polygon, open }) {
     const [first, second] = MEASURES[collider] ?? [];
-    const shown = { polygon: collider === "Convex", width: first, height: second, turn: TURNS[collider] };
+    const isPolygon = collider === "Convex";
+    const shown = { polygon: isPolygon, width: first, height: second, turn: TURNS[collider] };
     for (const [name, fits] of Object.entries(shown)) {
       this._form.querySelector(`.for-${name}`).hidden = !fits;
     }
     if (first) document.getElementById("width-name").textContent = first;
     this._fields.turn.step = TURNS[collider] ?? 1;
     this._fields.turn.max = collider === "AxisAlignedHalfPlane" ? 270 : 359;
-    this._open.hidden = collider !== "Convex";
+    this._open.hidden = !isPolygon;
     const key = `${polygon} ${open}`;
     if (this._open.dataset.shown === key) return;
     this._open.dataset.shown = key;
@@ -89,8 +95,9 @@ export class Form {
       const checked = open.includes(String(edge));
       // One edge must be there.
       const disabled = !checked && open.length === count - 1;
-      const box = make("input", { type: "checkbox", name: "edge", value: String(edge), checked, disabled });
-      return make("label", { className: "check" }, box, String(edge));
+      const value = String(edge);
+      const box = make("input", { type: "checkbox", name: "edge", value, checked, disabled });
+      return make("label", { className: "check" }, box, value);
     });
   }
 

@@ -1,6 +1,7 @@
 // What the engine says of two bodies, in words and numbers.
 
 const DIGITS = 5;
+const INSEPARABLE = "Nothing separates them: they reach around each other.";
 
 export class Sayings {
   /** @param {Record<string, () => void>} actions what the buttons do: relax, fly, bounce */
@@ -14,9 +15,8 @@ export class Sayings {
         Object.values(this._buttons).find((button) => !button.disabled)?.focus();
       };
     }
-    this._outputs = Object.fromEntries(
-      [...document.querySelectorAll("[data-says]")].map((element) => [element.dataset.says, element]),
-    );
+    const outputs = [...document.querySelectorAll("[data-says]")];
+    this._outputs = Object.fromEntries(outputs.map((output) => [output.dataset.says, output]));
   }
 
   /** Show what the record of a meeting says. */
@@ -31,7 +31,7 @@ export class Sayings {
       normal: overlap && pair(record.normal_x, record.normal_y),
       depth: overlap && number(record.depth),
       point: overlap && pair(record.point_x, record.point_y),
-      separable: overlap && !separable ? "Nothing separates them: they reach around each other." : "",
+      separable: overlap && !separable ? INSEPARABLE : "",
       share_a: number(a.share),
       share_b: number(b.share),
       relaxed_a: separable && pair(a.relaxed_x, a.relaxed_y),

@@ -128,7 +128,11 @@ class App {
       await this.show(partOf(location.hash));
       (this.part.scene ? this.part : this.stage).focus();
     });
+    // Who points at things needs no ring around the field; who goes on by Tab does.
+    const { classList } = document.documentElement;
+    addEventListener("pointerdown", () => classList.add("points"), true);
     addEventListener("keydown", (event) => {
+      if (event.key === "Tab") classList.remove("points");
       const key = this._meaning(event);
       if (!key) return;
       event.preventDefault();
@@ -172,7 +176,8 @@ class App {
   _meaning(event) {
     const { target } = event;
     if (this.part?.scene) return undefined;
-    if (event.altKey || target.closest("input:not([type=checkbox]), select, textarea")) return undefined;
+    const typing = target.closest("input:not([type=checkbox]), select, textarea");
+    if (event.altKey || typing) return undefined;
     if (event.key === " " && target.closest("input")) return undefined;
     const own = this.part?.keys;
     if (own && Object.hasOwn(own, wordOf(event))) return own[wordOf(event)];
@@ -203,7 +208,8 @@ function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const [code, manifest, facts] = await Promise.all([bytesOf("code"), jsonOf("manifest"), jsonOf("facts")]);
+const parts = [bytesOf("code"), jsonOf("manifest"), jsonOf("facts")];
+const [code, manifest, facts] = await Promise.all(parts);
 const app = new App(await loadArkanoid(code, manifest), facts);
 await app.show(partOf(location.hash));
 app.run();

@@ -22,7 +22,9 @@ export class Editor {
     const { manifest } = app.arkanoid;
     this._rules = manifest.rules;
     this.keys = { ...KEYS };
-    for (const letter of this._rules.BRICK_LETTERS) this.keys[letter.toLowerCase()] = `brush ${letter}`;
+    for (const letter of this._rules.BRICK_LETTERS) {
+      this.keys[letter.toLowerCase()] = `brush ${letter}`;
+    }
     this._find = (id) => document.getElementById(id);
     this._undone = [];
     this._done = [];
@@ -223,8 +225,9 @@ export class Editor {
     const row = (Math.floor(cell / COLUMNS) + down + ROWS) % ROWS;
     const column = ((cell % COLUMNS) + right + COLUMNS) % COLUMNS;
     this._cell = row * COLUMNS + column;
-    const name = this.app.facts.bricks.find(({ letter }) => letter === this._level.bricks[this._cell]);
-    this.app.say(`Row ${row + 1}, column ${column + 1}: ${name?.name ?? "empty"}`);
+    const here = this._level.bricks[this._cell];
+    const brick = this.app.facts.bricks.find(({ letter }) => letter === here);
+    this.app.say(`Row ${row + 1}, column ${column + 1}: ${brick?.name ?? "empty"}`);
     this.app.stage.stale = true;
   }
 
@@ -247,7 +250,8 @@ export class Editor {
     verdict.textContent = verdictOf(breakable, unreachable.length, boss);
     const panel = this.app.panel("editor");
     panel.querySelector("[data-edit=play]").disabled = !good;
-    panel.querySelector("[data-edit=attempt]").disabled = !good || (boss && !this._trials.knowsBoss);
+    const known = !boss || this._trials.knowsBoss;
+    panel.querySelector("[data-edit=attempt]").disabled = !(good && known);
     panel.querySelector("[data-edit=undo]").disabled = !this._done.length;
     panel.querySelector("[data-edit=redo]").disabled = !this._undone.length;
     this._trials.stop();
@@ -299,7 +303,8 @@ export class Editor {
   _fillPalette(bricks) {
     const empty = { letter: ".", name: "empty" };
     const choices = [...bricks, empty].map(({ letter, name, picture, width }) => {
-      const input = make("input", { type: "radio", name: "brush", value: letter, checked: letter === this._brush });
+      const input = make("input", { type: "radio", name: "brush", value: letter });
+      input.checked = letter === this._brush;
       input.setAttribute("aria-label", name);
       input.onchange = () => (this._brush = letter);
       const image = picture
@@ -313,10 +318,13 @@ export class Editor {
   _fillRecipe({ motifs, symmetries }) {
     for (const [id, words] of [["motif", motifs], ["symmetry", symmetries]]) {
       const any = make("option", { value: "" }, "Any");
-      const options = words.map((word) => make("option", { value: word }, word.replaceAll("_", " ")));
+      const options = words.map((word) => {
+        return make("option", { value: word }, word.replaceAll("_", " "));
+      });
       this._find(id).append(any, ...options);
     }
-    this._find("hardness").oninput = () => (this._find("hard").value = this._find("hardness").value);
+    const hardness = this._find("hardness");
+    hardness.oninput = () => (this._find("hard").value = hardness.value);
     this._find("recipe").onsubmit = (event) => {
       event.preventDefault();
       this._generate();

@@ -35,7 +35,9 @@ export class StartForm {
     const id = form.dataset.start;
     this._hint = make("p", { className: "hint" });
     this._level = make("select", { id: `${id}-level` });
-    this._seed = make("input", { type: "number", id: `${id}-seed`, min: 0, max: MOST_SEED, value: 7 });
+    this._seed = make("input", {
+      type: "number", id: `${id}-seed`, min: 0, max: MOST_SEED, value: 7,
+    });
     this._difficulty = make("input", {
       type: "range", id: `${id}-difficulty`, min: 0, max: 1, step: 0.05, value: 0.5,
     });
@@ -48,7 +50,8 @@ export class StartForm {
     this._generated = make("div", { className: "generated" },
       make("label", { htmlFor: this._seed.id }, "Its number"),
       make("div", { className: "seed" }, this._seed, dice),
-      make("label", { htmlFor: this._difficulty.id, className: "slider" }, "Difficulty", this._shown),
+      make("label", { htmlFor: this._difficulty.id, className: "slider" },
+        "Difficulty", this._shown),
       this._difficulty);
     form.append(
       make("fieldset", {}, make("legend", {}, legend), this._radios(id), this._hint),
@@ -99,7 +102,8 @@ export class StartForm {
   _radios(id) {
     const group = make("div", { className: "choice" });
     this._choices.forEach(({ name, title }, index) => {
-      const input = make("input", { type: "radio", name: `${id}-choice`, value: name, checked: !index });
+      const input = make("input", { type: "radio", name: `${id}-choice`, value: name });
+      input.checked = index === 0;
       group.append(make("label", {}, input, make("span", {}, title)));
     });
     return group;
@@ -123,7 +127,8 @@ export class StartForm {
     const before = this._level.value;
     const titles = new Map(this._manifest.levels.map(({ name, title }) => [name, title]));
     const rounds = names.map((name, index) => {
-      return make("option", { value: String(index + 1) }, `${index + 1} · ${titles.get(name) ?? name}`);
+      const number = String(index + 1);
+      return make("option", { value: number }, `${number} · ${titles.get(name) ?? name}`);
     });
     if (!names.length) rounds.push(make("option", { value: "1" }, "As in the training"));
     const group = make("optgroup", { label: "The rounds" }, ...rounds);

@@ -260,14 +260,16 @@ export class Play {
       .map((entry, place) => [
         [`${place + 1}.`, entry.score, `round ${entry.round}`], place === this._place]);
     const buttons = [["Play again", () => this._goOn()]];
-    return { title: "Game over", lines: [`Score ${score} · round ${round}`], table, buttons, band: true };
+    const lines = [`Score ${score} · round ${round}`];
+    return { title: "Game over", lines, table, buttons, band: true };
   }
 
   _fillScores() {
     const best = this.app.scores.best(this._scoresName).slice(0, SHOWN_SCORES);
     const rows = best.map(({ score, round, day }, place) => {
       const cells = [`${place + 1}.`, String(score), `round ${round} · ${day}`];
-      const row = make("li", { className: this.phase === "over" && place === this._place ? "new" : "" });
+      const isNew = this.phase === "over" && place === this._place;
+      const row = make("li", { className: isNew ? "new" : "" });
       row.append(...cells.map((cell) => make("span", {}, cell)));
       return row;
     });

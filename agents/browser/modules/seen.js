@@ -30,8 +30,12 @@ export class Seen {
     this._map = new Plane(COLUMNS, ROWS);
     const rows = Object.entries(game.parts.vector).map(([name, [first, last]]) => {
       const values = make("span");
-      if (name === "bricks") values.append(this._map.canvas);
-      else for (let place = first; place < last; place++) values.append((this._cells[place] = make("i")));
+      if (name === "bricks") {
+        values.append(this._map.canvas);
+      } else {
+        for (let place = first; place < last; place++) this._cells[place] = make("i");
+        values.append(...this._cells.slice(first, last));
+      }
       return make("div", {}, name.replaceAll("_", " "), values);
     });
     this._box.replaceChildren(...rows);

@@ -101,7 +101,8 @@ export class Stage {
     if (table.length) parts.push(tableOf(table));
     if (buttons.length) {
       const made = buttons.map(([label, action], index) => {
-        return make("button", { type: "button", className: index ? "" : "first", onclick: action }, label);
+        const className = index ? "" : "first";
+        return make("button", { type: "button", className, onclick: action }, label);
       });
       parts.push(make("div", { className: "buttons" }, ...made));
     }
@@ -174,7 +175,7 @@ export class Stage {
     }
   }
 
-  /** @returns {[number, number]} where a pointer is in the field, in brick widths from its corner */
+  /** @returns {[number, number]} where a pointer is in the field: x and y in brick widths */
   _place({ clientX, clientY }) {
     const { left, top, width } = this.canvas.getBoundingClientRect();
     const scale = width / this._view.width;

@@ -23,7 +23,8 @@ export class Thoughts {
     this._rows = meanings.map((meaning) => {
       const bar = make("i");
       const number = make("b");
-      const row = make("div", {}, wordsOf(meaning), make("span", { className: "bar-of" }, bar), number);
+      const track = make("span", { className: "bar-of" }, bar);
+      const row = make("div", {}, wordsOf(meaning), track, number);
       return { row, bar, number };
     });
     this._box.replaceChildren(...this._rows.map(({ row }) => row));
@@ -56,11 +57,15 @@ export class Thoughts {
     const density = devicePixelRatio || 1;
     const width = Math.round(canvas.clientWidth * density);
     const height = Math.round(canvas.clientHeight * density);
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    const fits = canvas.width === width && canvas.height === height;
+    if (!fits) Object.assign(canvas, { width, height });
     pen.clearRect(0, 0, width, height);
     const least = Math.min(0, ...values);
     const most = Math.max(0.001, ...values);
-    const y = (value) => height - 2 * density - ((value - least) / (most - least)) * (height - 4 * density);
+    const edge = 2 * density;
+    const y = (value) => {
+      return height - edge - ((value - least) / (most - least)) * (height - 2 * edge);
+    };
     const style = getComputedStyle(canvas);
     pen.strokeStyle = style.getPropertyValue("--line");
     pen.lineWidth = density;

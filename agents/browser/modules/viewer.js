@@ -68,7 +68,8 @@ export class Viewer {
     if (key === "pause" || key === "fire") this._pause();
     else if (key === "restart") this._restart();
     else if (key === "once") this._once(1);
-    else if (key === "right" || key === "left") this._once(key === "right" ? this._second : -this._second);
+    else if (key === "right") this._once(this._second);
+    else if (key === "left") this._once(-this._second);
   }
 
   release() {}
@@ -84,8 +85,11 @@ export class Viewer {
   }
 
   notice() {
-    if (this.phase === "empty") return { title: "No replay yet", lines: ["Drop a file here."], band: true };
-    if (this.phase === "verifying") return { title: "Verifying", lines: [this._share()], band: true };
+    const band = true;
+    if (this.phase === "empty") {
+      return { title: "No replay yet", lines: ["Drop a file here."], band };
+    }
+    if (this.phase === "verifying") return { title: "Verifying", lines: [this._share()], band };
     if (this.phase === "paused") return { buttons: [["Go on", () => this._pause()]] };
     if (this.phase === "over") {
       const { score, round } = this._replay.result;
@@ -99,7 +103,8 @@ export class Viewer {
     this.app.stage.sheet();
     if (!this._replay) return;
     this._scrub.value = this._at;
-    document.getElementById("time").value = `${this._clock(this._at)} of ${this._clock(this._replay.length)}`;
+    const [now, end] = [this._at, this._replay.length].map((decision) => this._clock(decision));
+    document.getElementById("time").value = `${now} of ${end}`;
   }
 
   async _take(file) {
@@ -142,7 +147,7 @@ export class Viewer {
     return this.app.arkanoid.manifest.rules.TICKS_PER_SECOND / this._game.config.frame_skip;
   }
 
-  /** Play on for a while, and compare checksums. @returns {boolean} always false: wait for a picture */
+  /** Play on for a while, and compare checksums. @returns {boolean} false: a picture is due */
   _verify() {
     const until = performance.now() + BUSY;
     try {
@@ -208,7 +213,8 @@ export class Viewer {
   }
 
   async _keep() {
-    download(await this._replay.toBytes(this._blank), this._name.endsWith(".replay") ? this._name : "arkanoid.replay");
+    const name = this._name.endsWith(".replay") ? this._name : "arkanoid.replay";
+    download(await this._replay.toBytes(this._blank), name);
   }
 
   _forget() {
@@ -225,7 +231,8 @@ export class Viewer {
     const verdict = document.getElementById("verdict");
     verdict.textContent = text;
     verdict.className = good ? "verdict good" : "verdict bad";
-    for (const element of document.getElementById("played").querySelectorAll("dl, label, input, .row")) {
+    const shown = document.getElementById("played").querySelectorAll("dl, label, input, .row");
+    for (const element of shown) {
       element.hidden = !this._replay;
     }
   }

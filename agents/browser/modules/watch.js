@@ -20,7 +20,9 @@ export class Watch {
     this.phase = "opening";
     const panel = app.panel("watch");
     const form = panel.querySelector("form");
-    const choices = app.facts.agents.map(({ name, game }) => ({ name, title: name, hint: "", game }));
+    const choices = app.facts.agents.map(({ name, game }) => {
+      return { name, title: name, hint: "", game };
+    });
     this._form = new StartForm(form, app.arkanoid.manifest, "Agent", choices, () => this._layOut());
     form.onsubmit = (event) => event.preventDefault();
     panel.querySelector("[data-do=next]").onclick = () => this._layOut();
@@ -103,7 +105,9 @@ export class Watch {
       return { title: "Paused", buttons: [["Go on", () => this._pause()]], band: true };
     }
     const { score, round_number: round } = this.game.world;
-    if (this.phase === "over") return { title: "Game over", lines: [`Score ${score} · round ${round}`] };
+    if (this.phase === "over") {
+      return { title: "Game over", lines: [`Score ${score} · round ${round}`] };
+    }
     if (this._handTicks > 0) {
       return { lines: [this._hand ? "You play. T hands back." : `${this._agent.name} plays.`] };
     }
