@@ -33,7 +33,8 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     experiment = model.experiment(overrides)
     named = [Path(arguments.model)] if arguments.model else []
     level = ["--level", quoted(arguments.level)] if arguments.level else []
-    page = arkanoid("web", *(["--model", *named] if named else []), "--no-open")
+    chosen: list[Path | str] = ["--model", *named] if named else []
+    page = arkanoid("web", *chosen, "--no-open")
     film = arkanoid("film", *named, "game.gif", *level)
     require_screen(f"a film needs none: {film}; nor does a browser: {page}")
     from ...envs.play.show import run_show
