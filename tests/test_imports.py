@@ -29,6 +29,7 @@ ORDER = {
         drawing
         operations
         body protocols
+        scenes
         pairs
         shapes
         arguments

@@ -21,7 +21,13 @@ from .agents import BrowserAgent
 from .facts import page_facts, page_icon
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
-_PARTS = {"play": "Play", "watch": "Watch", "replay": "Replay", "editor": "Editor"}
+_PARTS = {
+    "play": "Play",
+    "watch": "Watch",
+    "replay": "Replay",
+    "editor": "Editor",
+    "collide": "Collide",
+}
 # Of `browser_games`: those that people play, and those that agents were trained in.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
@@ -58,6 +64,7 @@ def make_page(agents: Sequence[BrowserAgent], opens: str = "play") -> str:
             "opens": opens,
             "style": _read("style.css"),
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
+            "scene": _read("scene.html"),
             "panels": "\n".join(map(_panel, _PARTS)),
             "imports": json.dumps({"imports": _imports()}),
             "data": "\n".join(_data(name, content) for name, content in data.items()),
@@ -90,7 +97,7 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), _HERE / "modules")
+    folders = (resources.files(machine_room), _HERE / "modules", _HERE / "collisions")
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
         for folder in folders

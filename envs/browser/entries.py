@@ -1,12 +1,14 @@
 """The entries that a browser calls: each does one thing with the record at its address.
 
 They call the very kernels that play, observe and draw on the processor. So the bits are the same.
-The index has no meaning: a record is of one game, picture, board, block or network.
+The index has no meaning: a record is of one game, picture, board, block, network or meeting.
 """
 
 from ...physics.kernels import kernel
 from ...physics.kernels.borrowed import BYTE
 from ...physics.kernels.portable import Entry, array_at
+from ...physics.scenes.meeting import meet_figures
+from ...physics.scenes.records import Meeting
 from ..tensors.observing import observe_grid, observe_vector
 from ..tensors.playing import play
 from .boards import lay_board, plan_board, search_board
@@ -114,8 +116,15 @@ def judge(index: int, address: int) -> None:
     think(array_at(address, (1,), Network)[0])
 
 
+@kernel
+def meet(index: int, address: int) -> None:
+    """Find all that the engine says of two bodies."""
+    meet_figures(address, array_at(address, (1,), Meeting)[0])
+
+
 _NAMES = (
     *("seed", "reset", "step", "steer", "forget", "note", "vector", "grid"),
     *("measure", "begin", "draw", "plan", "lay", "search", "add", "judge"),
+    "meet",
 )
 ENTRIES = tuple(Entry(__name__, name) for name in _NAMES)

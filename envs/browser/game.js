@@ -2,6 +2,7 @@
 
 import { Board, kindsOf } from "./board.js";
 import { Machine } from "./machine.js";
+import { Meeting } from "./meeting.js";
 
 /**
  * @typedef {object} Start how episodes begin from now on; nothing given changes nothing
@@ -90,6 +91,14 @@ export class Arkanoid {
   /** @returns {Promise<Board>} an empty drawing board for a level */
   async board() {
     return new Board(await this.machine());
+  }
+
+  /** @returns {Promise<Meeting>} two bodies */
+  async meeting() {
+    const machine = await this.machine();
+    const { image, length } = this.manifest.meetings;
+    machine.bytes(machine.reserve(length), length).set(fromBase64(image));
+    return new Meeting(machine);
   }
 }
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...physics.kernels.portable.wasm import FREE_FROM
+from ...physics.scenes.records import Meeting
 from ...version import __version__
 from .. import rules, state
 from ..actions import COMMANDS, action_meanings
@@ -31,6 +32,7 @@ from ..levels.starts import AS_THE_CONFIGURATION_SAYS
 from ..play.by_hand import BY_HAND
 from ..registration import resolve_config
 from ..state import INFO_FIELDS, INFO_MEANINGS
+from .collisions import describe_meetings
 from .image import Image, lay_out
 from .network import ACTIVATIONS
 from .records import Block, Board, Game, Network, Picture
@@ -45,6 +47,7 @@ RECORDS = {
     "Board": Board,
     "Block": Block,
     "Network": Network,
+    "Meeting": Meeting,
 }
 _RULES = (
     *("RULES_VERSION", "TICKS_PER_SECOND", "FIELD_WIDTH", "FIELD_HEIGHT", "COLUMNS", "ROWS"),
@@ -114,6 +117,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
             "gold": [0.0, MAX_GOLD],
         },
         "activations": ACTIVATIONS,
+        "meetings": describe_meetings(),
         "levels": [_level(name) for name in level_names()],
         "games": {name: _game(config) for name, config in games.items()},
     }

@@ -2,6 +2,7 @@
 
 import { loadArkanoid } from "arkanoid/game";
 import { Clock } from "arkanoid/clock";
+import { Collide } from "arkanoid/collide";
 import { FIELD_KEYS, KEYS } from "arkanoid/controls";
 import { bytesOf, jsonOf } from "arkanoid/data";
 import { Editor } from "arkanoid/editor";
@@ -13,7 +14,7 @@ import { Viewer } from "arkanoid/viewer";
 import { Watch } from "arkanoid/watch";
 
 /** What the page consists of, by the addresses of its parts: #play. */
-const PARTS = { play: Play, watch: Watch, replay: Viewer, editor: Editor };
+const PARTS = { play: Play, watch: Watch, replay: Viewer, editor: Editor, collide: Collide };
 
 class App {
   constructor(arkanoid, facts) {
@@ -63,6 +64,8 @@ class App {
     }
     const part = (this._parts[name] ??= new PARTS[name](this));
     this.part = part;
+    document.querySelector(".stage").hidden = Boolean(part.scene);
+    document.getElementById("scene").hidden = !part.scene;
     await part.enter();
     this.stage.sheet();
     document.querySelector(".bar").hidden = Boolean(part.still);
@@ -123,7 +126,7 @@ class App {
   _listen() {
     addEventListener("hashchange", async () => {
       await this.show(partOf(location.hash));
-      this.stage.focus();
+      (this.part.scene ? this.part : this.stage).focus();
     });
     // Who points at things needs no ring around the field; who goes on by Tab does.
     const { classList } = document.documentElement;
@@ -172,6 +175,7 @@ class App {
   /** @returns {string | undefined} what a key means where the focus is */
   _meaning(event) {
     const { target } = event;
+    if (this.part?.scene) return undefined;
     const typing = target.closest("input:not([type=checkbox]), select, textarea");
     if (event.altKey || typing) return undefined;
     if (event.key === " " && target.closest("input")) return undefined;
@@ -196,7 +200,7 @@ function wordOf({ key, ctrlKey, metaKey, shiftKey }) {
 }
 
 function partOf(hash) {
-  const name = hash.slice(1);
+  const [name] = hash.slice(1).split("?");
   return Object.hasOwn(PARTS, name) ? name : document.body.dataset.opens;
 }
 
