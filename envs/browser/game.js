@@ -4,6 +4,8 @@ import { Board, kindsOf } from "./board.js";
 import { Machine } from "./machine.js";
 import { Meeting } from "./meeting.js";
 
+const MOST_TICKS = 1000; // of a decision, as in `envs/config.py`
+
 /**
  * @typedef {object} Start how episodes begin from now on; nothing given changes nothing
  * @property {number | bigint} [seed] of the random numbers: forgets earlier options
@@ -64,6 +66,9 @@ export class Arkanoid {
     const image = this.manifest.games[name];
     if (config.paddle !== image.config.paddle) {
       throw new RangeError(`the paddle is ${config.paddle} times as wide as the browser's`);
+    }
+    if (!(config.frame_skip >= 1 && config.frame_skip <= MOST_TICKS)) {
+      throw new RangeError(`a decision has 1 to ${MOST_TICKS} ticks, not ${config.frame_skip}`);
     }
     const { length } = this.manifest.records.LevelEntry;
     const game = new Game(await this.machine(), "a game", {

@@ -135,6 +135,7 @@ export class Replay {
     const text = new TextDecoder().decode(await expand(content.subarray(4, 4 + length), MOST_TEXT));
     const head = JSON.parse(text.replace(WIDE, '"$1":"$2"'));
     const { rules } = tools.machine.manifest;
+    if (!Number.isInteger(head.rules)) throw new Error("the replay is damaged");
     if (head.rules !== rules.RULES_VERSION) {
       throw new Error(`the replay is of version ${head.rules} of the rules`);
     }

@@ -67,6 +67,7 @@ class App {
     document.querySelector(".stage").hidden = Boolean(part.scene);
     document.getElementById("scene").hidden = !part.scene;
     await part.enter();
+    if (this.part !== part) return; // another one was asked for meanwhile
     this.stage.sheet();
     document.querySelector(".bar").hidden = Boolean(part.still);
     this.stage.offerStrip(part.steers !== null);
@@ -85,8 +86,8 @@ class App {
   run() {
     this._listen();
     const picture = (now) => {
+      requestAnimationFrame(picture); // first: a fault must not be the end of all pictures
       this._picture(now);
-      requestAnimationFrame(picture);
     };
     requestAnimationFrame(picture);
   }
@@ -161,7 +162,7 @@ class App {
     event.preventDefault();
     const [file] = event.dataTransfer.files;
     if (!file) return;
-    await this._go(file.name.endsWith(".txt") ? "editor" : "replay");
+    await this._go(file.name.toLowerCase().endsWith(".txt") ? "editor" : "replay");
     await this.part.dropped(file);
   }
 
@@ -178,22 +179,21 @@ class App {
     if (this.part?.scene) return undefined;
     const typing = target.closest("input:not([type=checkbox]), select, textarea");
     if (event.altKey || typing) return undefined;
-    if (event.key === " " && target.closest("input")) return undefined;
+    if (event.key === " " && target.closest("input, button, a, summary")) return undefined;
     const own = this.part?.keys;
     if (own && Object.hasOwn(own, wordOf(event))) return own[wordOf(event)];
     if (event.ctrlKey || event.metaKey) return undefined;
-    if (event.key === " " && target.closest("button, a, summary")) return undefined;
     const onField = target === this.stage.canvas;
     return meaningOf(event) ?? (onField ? FIELD_KEYS[event.key] : undefined);
   }
 }
 
-function meaningOf({ key }) {
+function meaningOf({ key = "" }) {
   return KEYS[key.length === 1 ? key.toLowerCase() : key];
 }
 
 /** @returns {string} a key with those that are held: Ctrl+z */
-function wordOf({ key, ctrlKey, metaKey, shiftKey }) {
+function wordOf({ key = "", ctrlKey, metaKey, shiftKey }) {
   const plain = key.length === 1 ? key.toLowerCase() : key;
   if (!(ctrlKey || metaKey)) return plain;
   return `Ctrl+${shiftKey ? "Shift+" : ""}${plain}`;

@@ -3,7 +3,7 @@
 const FASTEST = 64;
 const SLOWEST = 1 / 16;
 const STEP = 2; // a key's factor
-const PATIENCE = 100; // milliseconds; what is later than this is not caught up with
+const LONGEST = 100; // milliseconds of a picture; after a longer pause the game does not catch up
 const BUSY = 12; // milliseconds of a picture's time that may be spent on playing
 
 export class Clock {
@@ -32,9 +32,8 @@ export class Clock {
    * @param {() => boolean} next lets one happen, and returns whether there are more
    */
   run(now, rate, next) {
-    const passed = now - this._last;
+    const passed = Math.min(LONGEST, now - this._last);
     this._last = now;
-    if (passed > PATIENCE) return;
     this._due += (passed / 1000) * rate * this.speed;
     const until = performance.now() + BUSY;
     for (; this._due >= 1; this._due -= 1) {

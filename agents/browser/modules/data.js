@@ -26,6 +26,19 @@ export function download(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
+/**
+ * Take the files that the user picks, one after the other.
+ * @param {HTMLInputElement} input
+ * @param {(file: File) => void} take
+ */
+export function picks(input, take) {
+  input.onchange = () => {
+    const [file] = input.files;
+    input.value = ""; // so that the same file, changed meanwhile, can be picked again
+    if (file) take(file);
+  };
+}
+
 /** @returns {string} the time, for names of files: 2026-11-27_09-05-00 */
 export function timeStamp() {
   const now = new Date();

@@ -1,6 +1,6 @@
 // The editor: a level is painted brick by brick; the kernels draw it, and say if it can be cleared.
 
-import { download, make } from "arkanoid/data";
+import { download, make, picks } from "arkanoid/data";
 import { randomSeed } from "arkanoid/levels";
 import { levelText, parseLevel } from "arkanoid/levelfile";
 import { Trials } from "arkanoid/trials";
@@ -8,6 +8,7 @@ import { Trials } from "arkanoid/trials";
 const PLACE = "arkanoid.level";
 const TRIES = 20;
 const MOST_UNDONE = 500;
+const MOST_BYTES = 1 << 20; // of a level file
 const KEYS = {
   ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down", " ": "paint",
   "Ctrl+z": "undo", "Ctrl+y": "redo", "Ctrl+Shift+z": "redo",
@@ -39,8 +40,7 @@ export class Editor {
     this._find("who").textContent = agent.name;
     this._fillPalette(app.facts.bricks);
     this._fillRecipe(manifest.generator);
-    const file = this._find("level-file");
-    file.onchange = () => file.files[0] && this.dropped(file.files[0]);
+    picks(this._find("level-file"), (file) => this.dropped(file));
   }
 
   get runs() {
@@ -99,8 +99,7 @@ export class Editor {
     if (!held) this._stroking = false;
     else if (this._cell !== null) {
       if (this._stroking) this._paint(this._cell);
-      else this._stroke(() => this._paint(this._cell));
-      this._stroking = true;
+      else this._stroking = this._stroke(() => this._paint(this._cell));
     }
   }
 
@@ -167,7 +166,8 @@ export class Editor {
   async dropped(file) {
     const fault = this._find("level-fault");
     try {
-      const level = parseLevel(await file.text(), this._rules);
+      if (file.size > MOST_BYTES) throw new Error("This is no level: the file is too large.");
+      const level = parseLevel(await file.text(), this._rules, file.name.replace(/\.[^.]*$/, ""));
       this._stroke(() => this._take(level));
       fault.textContent = "";
     } catch (error) {
@@ -183,15 +183,16 @@ export class Editor {
     this._show();
   }
 
-  /** Do something that can be undone. */
+  /** Do something that can be undone. @returns {boolean} whether it changed the bricks */
   _stroke(change) {
     const { bricks } = this._level;
     change();
-    if (this._level.bricks === bricks) return;
+    if (this._level.bricks === bricks) return false;
     this._done.push(bricks);
     if (this._done.length > MOST_UNDONE) this._done.shift();
     this._undone = [];
     this._show();
+    return true;
   }
 
   _swap(from, to) {

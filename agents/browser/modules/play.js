@@ -160,10 +160,12 @@ export class Play {
   /** Lay out a new game as the form says. */
   async _layOut() {
     this._keepUnfinished();
+    const turn = (this._turn = Symbol());
     const { game: name } = this._form.choice;
     const { app } = this;
     this.phase = "opening";
     this._recorders[name] ??= new Recorder(await app.arkanoid.open(name));
+    if (this._turn !== turn) return; // another one was asked for meanwhile
     this._recorder = this._recorders[name];
     this._rules = this.game.machine.record("Rules", this.game.address("rules"));
     this._options = this._form.options;
@@ -184,7 +186,7 @@ export class Play {
   }
 
   _keepUnfinished() {
-    if (this._begun) this._keepScore();
+    if (this._begun && this.phase !== "opening") this._keepScore();
   }
 
   get _begun() {

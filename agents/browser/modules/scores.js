@@ -8,12 +8,14 @@ const MOST_KEPT = 10; // of one game
 export class Scores {
   constructor() {
     this._games = {};
+    this._kept = true; // whether the browser took the last score
   }
 
   /** @returns {Score[]} of a game, the highest first */
   best(game) {
     this._read();
-    return this._games[game] ?? [];
+    const scores = this._games[game];
+    return Array.isArray(scores) ? scores.filter(isScore) : [];
   }
 
   /** @returns {number} the place of a score among the best, 0 for the highest; -1 if it is not */
@@ -25,7 +27,9 @@ export class Scores {
     this._games[game] = kept.slice(0, MOST_KEPT);
     try {
       localStorage.setItem(PLACE, JSON.stringify(this._games));
+      this._kept = true;
     } catch {
+      this._kept = false;
       // It is full, or forbidden.
     }
     return place;
@@ -33,11 +37,17 @@ export class Scores {
 
   /** Read them anew: another window may have written. */
   _read() {
+    if (!this._kept) return;
     try {
       const read = JSON.parse(localStorage.getItem(PLACE));
-      if (read && typeof read === "object") this._games = read;
+      if (read && typeof read === "object" && !Array.isArray(read)) this._games = read;
     } catch {
       // Forbidden, or damaged.
     }
   }
+}
+
+/** What the browser holds may come from anywhere: from another release, say. */
+function isScore(value) {
+  return [value?.score, value?.round].every(Number.isFinite) && typeof value.day === "string";
 }

@@ -1,7 +1,7 @@
 // Replays: a file is played again and verified; then one can go to any time of it.
 
 import { Replay } from "arkanoid/replay";
-import { download, make } from "arkanoid/data";
+import { download, make, picks } from "arkanoid/data";
 
 const MOST_SNAPSHOTS = 2000;
 const LEAST_APART = 256; // decisions between two snapshots
@@ -15,7 +15,7 @@ export class Viewer {
     this.phase = "empty";
     const [drop, file] = ["drop", "file"].map((id) => document.getElementById(id));
     document.getElementById("open").onclick = () => file.click();
-    file.onchange = () => file.files[0] && this._take(file.files[0]);
+    picks(file, (picked) => this._take(picked));
     this._mine = document.getElementById("mine");
     this._mine.onclick = () => this._begin(app.played(), "The game just played");
     this._scrub = document.getElementById("scrub");
@@ -79,7 +79,7 @@ export class Viewer {
   tick() {
     if (this.phase === "verifying") return this._verify();
     if (!this.runs) return false;
-    this._step();
+    if (this._at < this._replay.length) this._step();
     if (this._at === this._replay.length) this.phase = "over";
     return this.runs;
   }
@@ -114,7 +114,7 @@ export class Viewer {
       const bytes = new Uint8Array(await file.arrayBuffer());
       await this._begin(await Replay.fromBytes(bytes, this._blank), file.name);
     } catch (error) {
-      this._tell(file.name, `${sentence(error.message)}.`, false);
+      this._tell(file.name, `${sentence(reason(error))}.`, false);
     }
   }
 
@@ -125,7 +125,7 @@ export class Viewer {
     try {
       this._game = await replay.open(arkanoid);
     } catch (error) {
-      this._tell(name, `${sentence(error.message)}.`, false);
+      this._tell(name, `${sentence(reason(error))}.`, false);
       return;
     }
     this._replay = replay;
@@ -163,7 +163,7 @@ export class Viewer {
     } catch (error) {
       const name = this._name;
       this._forget();
-      this._tell(name, `Not the same game: ${error.message}.`, false);
+      this._tell(name, `Not the same game: ${reason(error)}.`, false);
     }
     return false;
   }
@@ -254,7 +254,7 @@ export class Viewer {
   }
 
   _share() {
-    return `${Math.floor((100 * this._at) / this._replay.length)} %`;
+    return `${Math.floor((100 * this._at) / Math.max(1, this._replay.length))} %`;
   }
 
   /** @returns {string} minutes and seconds until a decision */
@@ -262,6 +262,12 @@ export class Viewer {
     const seconds = Math.floor(decision / this._rate);
     return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
   }
+}
+
+/** @returns {string} why a file can't be shown. Some lack what others have. */
+function reason(error) {
+  const lacks = error instanceof TypeError || error instanceof SyntaxError;
+  return lacks ? "the replay is damaged" : error.message;
 }
 
 function sentence(text) {

@@ -64,6 +64,7 @@ export class Watch {
   }
 
   leave() {
+    this._controls.letGo();
     if (this.runs) this.phase = "paused";
   }
 
@@ -125,12 +126,14 @@ export class Watch {
   }
 
   async _layOut() {
+    const turn = (this._turn = Symbol());
     const { name, game } = this._form.choice;
     this.phase = "opening";
     if (!this._agents[name]) {
       const file = await bytesOf(`agent-${name}`);
       this._agents[name] = new Agent(await this.app.arkanoid.open(game), file);
     }
+    if (this._turn !== turn) return; // another one was asked for meanwhile
     const agent = this._agents[name];
     if (agent !== this._agent) this._thoughts.begin(agent.game.meanings);
     this._agent = agent;

@@ -119,6 +119,9 @@ def test_files_come_and_go_as_python_reads_them(editor: Any, tmp_path: Path) -> 
     {
         "name: Odd\n\n.rq........\n": "This is no level: line 3: “q” is no brick.",
         "rrr\n": "This is no level: line 1: a row has 11 letters.",
+        "title: Odd\n": "This is no level: line 1: headings are name, comment, boss.",
+        "boss: 1\n": "This is no level: line 1: boss is yes or no.",
+        "." * (1 << 20) + ".": "This is no level: the file is too large.",
         ("r" * 11 + "\n") * 19: "This is no level: 18 rows fit the field.",
     }.items(),
 )
@@ -126,6 +129,41 @@ def test_files_that_are_no_levels(editor: Any, text: str, sentence: str) -> None
     put(editor, "odd.txt", text)
     wait_until(editor, "document.getElementById('level-fault').textContent")
     assert editor.locator("#level-fault").text_content() == sentence
+
+
+def test_a_file_that_is_opened_again_and_names_that_nobody_sees(
+    editor: Any, tmp_path: Path
+) -> None:
+    """Browsers do not tell of the same file twice; and Python refuses letters that nobody sees."""
+    path = tmp_path / "twice.txt"
+    for row in ("r" * COLUMNS, "b" * COLUMNS):
+        path.write_text(f"comment: \U0001f468\u200d\U0001f469\n\n{row}\n", "utf-8")
+        editor.locator("#level-file").set_input_files(path)
+        wait_until(editor, f"part._level.bricks.startsWith('{row}')")
+    editor.get_by_text("Level files").click()
+    assert editor.get_by_label("Name").input_value() == "twice"
+    editor.get_by_label("Name").fill("A\u200db\u00a0c")
+    with editor.expect_download() as download:
+        editor.get_by_role("button", name="Download").click()
+    download.value.save_as(path)
+    level = load_level(str(path))
+    assert (level.name, level.comment) == ("Ab c", "\U0001f468\U0001f469")
+
+
+def test_a_stroke_that_begins_where_nothing_changes(editor: Any) -> None:
+    """What it changed later could not be undone, and the undo before it was lost."""
+    for _ in range(2):
+        editor.mouse.move(*place(editor, 2, 1))
+        editor.mouse.down()
+        editor.mouse.up()
+    editor.mouse.down()
+    editor.mouse.move(*place(editor, 2, 3), steps=6)
+    editor.mouse.up()
+    assert bricks(editor).count("r") == 3
+    editor.get_by_role("button", name="Undo").click()
+    assert bricks(editor).count("r") == 1
+    editor.get_by_role("button", name="Undo").click()
+    assert set(bricks(editor)) == {"."}
 
 
 def test_what_nobody_can_clear_is_told_at_once(editor: Any) -> None:

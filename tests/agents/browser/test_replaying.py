@@ -1,6 +1,9 @@
 """Replays in a real browser: its own, Python's, and files that are none."""
 
 import base64
+import json
+import struct
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,8 @@ from arkanoid.envs.batch.recorder import Recorder
 from arkanoid.envs.batch.replays import Replay
 from arkanoid.envs.browser.manifest import browser_games
 from arkanoid.envs.config import Config
+from arkanoid.envs.rules import RULES_VERSION
+from arkanoid.physics.kernels.sealed import seal
 from helpers.browser import wait_until
 from helpers.repository import TESTS
 
@@ -101,6 +106,20 @@ def test_the_game_just_played(page: Any) -> None:
     assert verdict(page).startswith("The same game: all ")
 
 
+def test_a_game_without_a_decision(page: Any) -> None:
+    """It was played on, and from then on no picture was shown."""
+    batch = Batch(1, browser_games()["full"])
+    recorder = Recorder(batch, 0)
+    batch.reset(np.ones(1, np.bool_), {}, [3])
+    drop(page, "empty.replay", recorder.replay().to_bytes())
+    wait_until(page, "part.phase === 'over'")
+    assert verdict(page).startswith("The same game: all ")
+    page.keyboard.press("Space")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press(".")
+    wait_until(page, "!arkanoid.stage.stale")
+
+
 def test_any_configuration_can_be_seen(page: Any) -> None:
     """The golden replay has capsules, enemies, more lives, and levels of its own."""
     drop(page, "golden.replay", (TESTS / "envs" / "batch" / "golden.replay").read_bytes())
@@ -115,9 +134,22 @@ def test_a_paddle_of_another_width_is_refused(page: Any) -> None:
     assert verdict(page) == "The paddle is 2 times as wide as the browser's."
 
 
+def _with_head(head: dict[str, Any]) -> bytes:
+    """Return a file whose checksum is right, and whose JSON is this."""
+    text = zlib.compress(json.dumps(head).encode())
+    return seal(b"ARKAPLAY", 1, struct.pack("<I", len(text)) + text)
+
+
 def test_files_that_are_no_replays(page: Any, recorded: bytes) -> None:
     for content, sentence in {
         b"name: Mine\n\n...": "This is no replay.",
+        b"": "This is no replay.",
+        b"\x89PNG\r\n\x1a\n" + bytes(99): "This is no replay.",
+        seal(b"ARKAPLAY", 2, b""): "The replay is of another format.",
+        _with_head({}): "The replay is damaged.",
+        _with_head({"rules": 99}): "The replay is of version 99 of the rules.",
+        _with_head({"rules": RULES_VERSION}): "The replay is damaged.",
+        seal(b"ARKAPLAY", 1, bytes(9)): "The replay is damaged.",
         recorded[:-1]: "The replay is damaged.",
         recorded[:200] + b"?" + recorded[201:]: "The replay is damaged.",
     }.items():
