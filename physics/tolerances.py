@@ -22,9 +22,10 @@ NO_LENGTH = 1e-12
 # and is relaxed.
 NO_DEPTH = 1e-12
 
-# A fraction of the bodies' speeds. Bodies that approach more slowly only seem to, by the rounding
-# of the bounce before.
-NO_APPROACH = 1e-15
+# A fraction of the speeds that two bodies have had since their plans were made, |vx| + |vy|. Bodies
+# that approach more slowly only seem to, by the rounding of the hits before: each leaves an error
+# of a few last digits, 1e-16, of what the speeds were. If they touch, they rest.
+NO_APPROACH = 1e-14
 
 # Rounds of relaxation at the beginning of a step. In a pile where each body pushes the next one,
 # each round reduces the overlaps by a constant factor; where there is no room, this limit ends it.
@@ -33,3 +34,39 @@ RELAX_ROUNDS = 64
 # A fraction of the coordinates of where two bodies meet. Points closer than this count as one:
 # which of two static bodies is met first there is a matter of rounding.
 SAME_POINT = 1e-15
+
+# A fraction of the coordinates of where bodies touch and come from. Touches whose gaps differ by
+# less happen at the same time: a place is the sum of some such numbers, with errors of 1e-16 each.
+SAME_TIME = 1e-14
+
+# A fraction of a group's speeds, and of the changes of them. A group is resolved when no touch
+# lacks more; the hits that would follow are slower than NO_APPROACH.
+RESOLVED = 4e-15
+
+# The same, while bodies still join the group.
+ROUGHLY = 0.01
+
+# Steps of the method that resolves a group: some, and some for each touch. It needs about one for
+# each touch; rounding costs a few more.
+STEPS = 64
+STEPS_PER_TOUCH = 8
+
+# A fraction. If a course, in the method that resolves a group, bends less than this, there is no
+# end to it: the bodies have no room. Masses of 1 : 1e9 still bend by 1e-10. Bodies that press each
+# other along a line that is straight to 1e-6 would leave it a million times faster.
+NO_BEND = 1e-12
+
+# Where bodies have no room, each touch gets what it lacks so often. There is no right answer.
+SWEEPS = 8
+
+# Hits of a body at one time. If it bounces on and loses speed each time, there is no end to it: a
+# geometric series. After so many, all that is left of it is lost at once.
+MOST_AT_ONCE = 32
+
+# How often a body comes to rest before it slides: while bodies that rest on each other slide, the
+# directions may turn, so that they hit each other again, always sooner.
+MOST_RESTS = 8
+
+# What slides rests on what it approaches with no more than this fraction of the speeds, as for
+# NO_APPROACH. It looks again when it has gone this fraction of its size: so far it may sink in.
+SLIDE = 0.01

@@ -10,7 +10,7 @@ from ..pairs.table import contact_between
 from ..tolerances import NO_DEPTH, RELAX_ROUNDS
 from .events import enter_sensor, has_room, write_event
 from .grid import enter_all, find_near
-from .impacts import bounce_pair
+from .meetings.pair import bounce_pair
 from .prediction import is_inside, motion_at
 from .records import HIT, Hits
 from .view import (
