@@ -121,8 +121,9 @@ def _meet(world: WorldView, hits: Hits, count: int, world_index: int, slot: int)
         count = write_event(
             world, hits, count, world_index, HIT, now, a, b, normal_x, normal_y, x, y, impulse
         )
-        for body in (a, b):
-            if inverse_mass_of(world, body) > 0.0:
-                count_hit(world, traits_of(world)[body].slot)
+    # It also counts if it was no hit, so that a step always ends.
+    for body in (a, b):
+        if inverse_mass_of(world, body) > 0.0:
+            count_hit(world, traits_of(world)[body].slot)
     plan_after_hit(world, a, b, now, now_low)
     return count

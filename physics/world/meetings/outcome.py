@@ -160,7 +160,8 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
         slot = traits[members[index].body].slot
         plans_of(world)[slot].kind = NOTHING
         if members[index].inverse_mass > 0.0:
-            for _ in range(members[index].met):
+            # It also counts if nothing touched, so that a step always ends.
+            for _ in range(1 if progress.touches == 0 else members[index].met):
                 count_hit(world, slot)
             if members[index].rests:
                 count_rest(world, slot)
