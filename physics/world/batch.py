@@ -71,7 +71,7 @@ class WorldBatch:
 
     @property
     def capped(self) -> npt.NDArray[np.int64]:
-        """How often a body has used up its hits of a step, int64 [num_worlds], a copy."""
+        """How often a body has used up its hits of a step, or had no room, int64 [num_worlds]."""
         return self._clocks()["capped"].copy()
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:

@@ -6,7 +6,7 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, overlap_between
 from ..pairs.touching_point import touching_point
 from .clock_time import is_earlier, later
-from .prediction import motion_at
+from .courses import motion_at
 from .records import BEGIN, END, Hits
 from .view import (
     WorldView,

@@ -25,7 +25,7 @@ class Scene:
         overrides: the restitution of single pairs, a < b.
         inside: pairs of a sensor and a body inside it.
         time: as a sum of two numbers, see `clock_time`.
-        capped: how often a body has used up its hits of a step.
+        capped: how often a body has used up its hits of a step, or had no room.
     """
 
     is_continuous: bool

@@ -7,12 +7,12 @@ from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..pairs.touching import touch_margins
 from ..tolerances import RELAX_ROUNDS
+from .courses import margins_of, motion_at
 from .events import enter_sensor, has_room, write_event
 from .grid import enter_all, find_near
-from .impacts import bounce_pair
-from .prediction import is_inside, motion_at
+from .meetings.pair import bounce_pair
+from .prediction import is_inside
 from .records import HIT, Hits
 from .view import (
     WorldView,
@@ -76,7 +76,7 @@ def _contact_at(
     bx, by, _, _ = motion_at(world, b, now, now_low)
     shapes, edges = shapes_of(world), edges_of(world)
     first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
-    margin_x, margin_y = touch_margins(shapes, edges, first, second, ax, ay, bx, by)
+    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
     found, normal_x, normal_y, depth, x, y = contact_between(
         shapes, edges, first, second, bx - ax, by - ay, margin_x, margin_y
     )

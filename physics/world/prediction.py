@@ -8,20 +8,20 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
-from ..pairs.touching import margin_along, touch_margins
-from ..pairs.touching_point import shared_stretch
-from ..shapes.records import Edges, ShapeRecord
-from ..tolerances import FLATTEST, NO_APPROACH, TOUCH
-from .clock_time import elapsed, later
+from ..pairs.touching import margin_along
+from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
+from .clock_time import later
+from .courses import margins_of, motion_at, short_way
 from .grid import find_near, time_to_cross
-from .records import CROSS_X, CROSS_Y, MEET, NOTHING, PlanRecord, TraitRecord
+from .meetings.passing import passes_by
+from .meetings.ties import is_straighter
+from .records import CROSS_X, CROSS_Y, LOOK, MEET, NOTHING, PlanRecord, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
     edges_of,
     header_of,
     inside_of,
-    motions_of,
     moving_of,
     near_of,
     plans_of,
@@ -34,26 +34,6 @@ from .view import (
 
 
 @kernel
-def is_capped(world: WorldView, slot: int) -> bool:
-    """Return whether a body has used up its hits of this step, and so stays where it is."""
-    return bool(slot >= 0 and plans_of(world)[slot].hits >= header_of(world).max_hits)
-
-
-@kernel
-def motion_at(
-    world: WorldView, body: int, now: float, now_low: float
-) -> tuple[float, float, float, float]:
-    """Return (x, y, vx, vy) of a body at a time within the step."""
-    trait = traits_of(world)[body]
-    if trait.slot < 0:
-        return trait.home_x, trait.home_y, 0.0, 0.0
-    motion = motions_of(world)[trait.slot]
-    plan = plans_of(world)[trait.slot]
-    since = 0.0 if is_capped(world, trait.slot) else elapsed(now, now_low, plan.at, plan.at_low)
-    return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
-
-
-@kernel
 def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
     """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
     bodies = traits_of(world).shape[0]
@@ -62,107 +42,6 @@ def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b:
     if other.sensor >= 0:
         return bool(inside_of(world)[other.sensor * bodies + a])
     return False
-
-
-@kernel
-def _approaches(vx: float, vy: float, normal_x: float, normal_y: float, speed: float) -> bool:
-    """Return whether two bodies that touch or overlap, perhaps only by rounding, have to bounce.
-
-    Args:
-        vx, vy: velocity of the second body, to which the normal points, relative to the first.
-        normal_x, normal_y: the normal.
-        speed: the sum of both bodies' speeds, on which the rounding of the velocity depends.
-    """
-    return bool(-(vx * normal_x + vy * normal_y) > NO_APPROACH * speed)
-
-
-@kernel
-def _skewness(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
-    """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
-    least = 1.0
-    for index in range(shape.first, shape.first + shape.count):
-        edge = edges[index]
-        least = min(least, abs(edge.normal_x * y - edge.normal_y * x))
-    return least
-
-
-@kernel
-def _facing_length(
-    world: WorldView,
-    a: int,
-    b: int,
-    now: float,
-    now_low: float,
-    ahead: float,
-    normal_x: float,
-    normal_y: float,
-) -> float:
-    """Return along which length two bodies face each other some time ahead, when they meet."""
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    x, y, vx, vy = motion_at(world, a, now, now_low)
-    their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
-    dx = (their_x - x) + (their_vx - vx) * ahead
-    dy = (their_y - y) + (their_vy - vy) * ahead
-    one, other = traits[a].collider, traits[b].collider
-    _, low, high = shared_stretch(shapes, edges, one, other, dx, dy, normal_x, normal_y)
-    return high - low
-
-
-@kernel
-def _is_at_once(
-    world: WorldView,
-    plan: PlanRecord,
-    trait: TraitRecord,
-    time: float,
-    best: float,
-    ux: float,
-    uy: float,
-    normal_x: float,
-    normal_y: float,
-    margin: float,
-) -> bool:
-    """Return whether a body is met when the planned partner is, as far as rounding can tell.
-
-    So it is if the one that is met later, of two static bodies, is then touched already. It
-    approaches with (ux, uy).
-    """
-    if time == best:
-        return True
-    if trait.slot >= 0 or traits_of(world)[plan.partner].slot >= 0:
-        return False
-    if time < best:
-        normal_x, normal_y = plan.normal_x, plan.normal_y
-    return bool(abs(time - best) * -(ux * normal_x + uy * normal_y) <= margin)
-
-
-@kernel
-def _is_straighter(
-    world: WorldView,
-    plan: PlanRecord,
-    body: int,
-    other: int,
-    now: float,
-    now_low: float,
-    ahead: float,
-    normal_x: float,
-    normal_y: float,
-) -> bool:
-    """Return whether a body is met more along a face than the partner that is planned.
-
-    This decides between two bodies that are met at the same time, within rounding, some time ahead.
-    A disc that lands on the seam of two boxes meets the face of one and not the corner of the
-    other. A box that lands there meets the one on which it lies, and not the other's side.
-    """
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    rank = _skewness(shapes[traits[other].collider], edges, normal_x, normal_y)
-    partner = shapes[traits[plan.partner].collider]
-    best_rank = _skewness(partner, edges, plan.normal_x, plan.normal_y)
-    if rank == best_rank:
-        rank = -_facing_length(world, body, other, now, now_low, ahead, normal_x, normal_y)
-        best_rank = -_facing_length(
-            world, body, plan.partner, now, now_low, ahead, plan.normal_x, plan.normal_y
-        )
-    return bool(rank < best_rank or (rank == best_rank and other < plan.partner))
 
 
 @kernel
@@ -179,8 +58,9 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     plan.kind = NOTHING
     plan.time = math.inf
     plan.time_low = 0.0
-    if not is_capped(world, slot):
-        _find_event(world, slot, now, now_low, only_later)
+    plan.slack = 0.0
+    plan.tied = 0
+    _find_event(world, slot, now, now_low, only_later)
     replay(winners_of(world), plans_of(world), slot)
 
 
@@ -196,22 +76,23 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     own = traits[body]
     x, y, vx, vy = motion_at(world, body, now, now_low)
     best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
+    if plan.rests >= MOST_RESTS:
+        best = _look_again(world, plan, body, abs(vx) + abs(vy), best)
     for index in range(find_near(world, slot, only_later)):
         other = near[index]
         trait = traits[other]
         their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
         dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
-        slack = 0.0
+        latest = best + plan.slack
         if trait.slot < 0 and ux * ux + uy * uy > 0.0:
             coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-            slack = TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy))
-        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
+            flat = TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy))
+            latest = best + max(flat, plan.slack)
+        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, latest):
             continue
-        if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
+        if is_inside(world, own, body, trait, other):
             continue
-        margin_x, margin_y = touch_margins(
-            shapes, edges, own.collider, trait.collider, x, y, their_x, their_y
-        )
+        margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
         time, normal_x, normal_y = impact_between(
             shapes,
             edges,
@@ -221,33 +102,51 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             dy,
             ux,
             uy,
-            best + slack,
+            latest,
             margin_x,
             margin_y,
         )
         if time == math.inf:
             continue
-        if time == 0.0 and own.sensor < 0 and trait.sensor < 0:
-            progress_of(world).touching = 1
-            speed = abs(vx) + abs(vy) + abs(their_vx) + abs(their_vy)
-            if not _approaches(ux, uy, normal_x, normal_y, speed):
-                continue
+        closing = -(ux * normal_x + uy * normal_y)
         margin = margin_along(normal_x, normal_y, margin_x, margin_y)
-        if plan.kind == MEET and _is_at_once(
-            world, plan, trait, time, best, ux, uy, normal_x, normal_y, margin
-        ):
-            is_first = _is_straighter(
-                world, plan, body, other, now, now_low, best, normal_x, normal_y
+        if own.sensor < 0 and trait.sensor < 0:
+            if time == 0.0:
+                progress_of(world).touching = 1
+            if time * closing <= margin and passes_by(world, body, other, closing):
+                continue
+        slack = margin / closing if closing > 0.0 else 0.0
+        # At the same time as the best so far: then the later one is touched already.
+        is_tied = plan.kind == MEET and -plan.slack <= time - best <= slack
+        both_rest = trait.slot < 0 and traits[plan.partner].slot < 0
+        if is_tied and (time == best or both_rest):
+            when, when_low = later(now, now_low, best)
+            is_first = is_straighter(
+                world,
+                body,
+                other,
+                normal_x,
+                normal_y,
+                plan.partner,
+                plan.normal_x,
+                plan.normal_y,
+                when,
+                when_low,
             )
         else:
             # At the same time, a meeting comes before a crossing.
             is_first = time < best or (time == best and plan.kind != MEET)
+        if is_tied:
+            plan.tied = 1
+        elif is_first:
+            plan.tied = 0
         if is_first:
             best = time
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
             plan.normal_y = normal_y
+            plan.slack = slack
     if plan.kind != NOTHING:
         plan.time, plan.time_low = later(now, now_low, best)
 
@@ -264,6 +163,22 @@ def _find_crossing(
     if time < math.inf:
         plan.kind = CROSS_X if time_x <= time_y else CROSS_Y
     return time
+
+
+@kernel
+def _look_again(world: WorldView, plan: PlanRecord, body: int, speed: float, best: float) -> float:
+    """Plan to look again what a body slides into, if that is its first event; return in how long.
+
+    Args:
+        world, plan, body: the body.
+        speed: its speed, |vx| + |vy|.
+        best: in how long its first event is so far.
+    """
+    way = short_way(world, body)
+    if speed > 0.0 and way < best * speed:
+        plan.kind = LOOK
+        return way / speed
+    return best
 
 
 @kernel

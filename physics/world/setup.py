@@ -15,7 +15,7 @@ from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
 from .grid import NO_ONE, count_cells, fill_cells
-from .records import Header, Motion, Override, Plan, Progress, Trait
+from .records import Header, Member, Motion, Override, Plan, Progress, Touch, Trait
 from .tournament import leaf_count
 from .view import CLOCK_SIZE
 
@@ -32,6 +32,10 @@ LARGE = 8.0
 MANY_CELLS = 0.25
 # Cells are larger than the largest body by this fraction, because of rounding.
 MARGIN = 1e-6
+# Bodies that can be resolved together, and touches of each of them that there is room for. Of a
+# larger group, the rest is resolved after the first part.
+LARGEST_GROUP = 512
+TOUCHES = 4
 
 
 @dataclass(frozen=True)
@@ -140,12 +144,14 @@ def build_setup(
     boxes += np.tile(positions, 2)
     header = np.zeros(1, Header)
     header["max_hits"], header["continuous"] = max_hits, continuous
+    header["inelastic"] = (traits["restitution"] == 0.0).any() or 0.0 in overrides.values()
     static = np.flatnonzero(~moves)
     boundless, firsts, entered = _make_grid(header, boxes, static, reach, resident, positions)
     pairs = np.array([(*pair, e) for pair, e in sorted(overrides.items())], Override)
     header["bodies"], header["movers"] = len(specs), len(moving)
     header["sensors"] = len(sensing)
     _plan_state(header, cells=len(firsts) - 1)
+    group = min(len(moving), LARGEST_GROUP)
     workspace = _pack(
         header,
         traits=traits,
@@ -161,6 +167,9 @@ def build_setup(
         progress=np.zeros(1, Progress),
         near=np.zeros(len(specs), np.int64),
         stale=np.zeros(len(moving), np.int64),
+        places=np.zeros(len(moving), np.int64),
+        members=np.zeros(group, Member),
+        touches=np.zeros(TOUCHES * (group + 2), Touch),
     )
     return Setup(workspace, moving, sensing, shapes, edges, traits)
 

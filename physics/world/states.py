@@ -16,6 +16,7 @@ from .records import (
     CROSS_X,
     CROSS_Y,
     END,
+    FREE,
     MEET,
     NOTHING,
     Block,
@@ -218,6 +219,12 @@ def _is_possible_plan(world: WorldView, plan: PlanRecord, slot: int) -> bool:
     """Tell whether a body's plan is one that a step may leave."""
     header, clock = header_of(world), clock_of(world)
     if plan.at != clock.time or plan.at_low != clock.time_low or plan.hits != 0:
+        return False
+    if plan.rests != 0 or plan.instant != 0 or plan.stage != FREE:
+        return False
+    if plan.tied not in (0, 1) or not plan.slack >= 0.0:
+        return False
+    if not 0.0 <= plan.speed < math.inf:
         return False
     if plan.time + plan.time_low != plan.time or not is_earlier(
         clock.time, clock.time_low, plan.time, plan.time_low

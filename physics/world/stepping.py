@@ -5,12 +5,13 @@ import math
 from ..kernels import kernel
 from ..kernels.borrowed import borrowed
 from .clock_time import elapsed, later
+from .courses import move_to
 from .events import forget_moved, leave_all_sensors
 from .grid import enter_all
-from .impacts import move_to, run_events
+from .impacts import run_events
 from .overlaps import relax_overlaps, resolve_overlaps
 from .prediction import predict
-from .records import NOTHING, Block, Blocks, Hit, Hits, Motions
+from .records import FREE, NOTHING, Block, Blocks, Hit, Hits, Motions
 from .tournament import start_tournament
 from .view import (
     WorldView,
@@ -90,6 +91,7 @@ def begin_step(world: WorldView, dt: float) -> bool:
     if not abs(progress.end) < math.inf:
         return False
     progress.crowded = 0
+    progress.inert = 0
     if clock.planned and _are_equal(motions_of(world), motions_after_step_of(world)):
         return True
     if not _are_finite(motions_of(world)):
@@ -144,9 +146,13 @@ def _clear_plans(world: WorldView) -> None:
         plan = plans[slot]
         plan.at = clock.time
         plan.at_low = clock.time_low
-        plan.hits = 0
+        plan.speed = abs(motions_of(world)[slot].vx) + abs(motions_of(world)[slot].vy)
+        plan.hits = plan.rests = plan.instant = 0
+        plan.stage = FREE
         plan.time = math.inf
         plan.time_low = 0.0
+        plan.slack = 0.0
+        plan.tied = 0
         plan.kind = NOTHING
 
 
@@ -182,20 +188,18 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         return count
     end, end_low = progress.end, progress.end_low
     clock.time, clock.time_low = end, end_low
-    clock.planned = header.continuous and not progress.crowded
+    # Plans of bodies that are not free are for this step only.
+    clock.planned = header.continuous and not progress.crowded and not progress.inert
     motions, plans = motions_of(world), plans_of(world)
     after_step = motions_after_step_of(world)
     for slot in range(header.movers):
         motion, after, plan = motions[slot], after_step[slot], plans[slot]
-        if plan.hits < header.max_hits:
-            since = elapsed(end, end_low, plan.at, plan.at_low)
-            motion.x += motion.vx * since
-            motion.y += motion.vy * since
-            plan.at, plan.at_low = end, end_low
-        else:
-            # It stays where it is for the rest of this step, and the next step makes new plans.
-            clock.planned = 0
-        plan.hits = 0
+        since = elapsed(end, end_low, plan.at, plan.at_low)
+        motion.x += motion.vx * since
+        motion.y += motion.vy * since
+        plan.at, plan.at_low = end, end_low
+        plan.hits = plan.rests = plan.instant = 0
+        plan.stage = FREE
         after.x, after.y, after.vx, after.vy = motion.x, motion.y, motion.vx, motion.vy
     if not _are_finite(motions):
         clock.planned = 0

@@ -59,13 +59,13 @@ class World:
         bodies: added in this order, see `add`.
         continuous: if False, each step is the procedure of the lecture on collisions in games
             instead: move by dt, detect, relax, bounce.
-        max_hits: of one body in one step. A body that has used them up stays where it is for the
-            rest of the step; `capped` counts that, and there is a `HitLimitWarning`. (Only bodies
-            that are squeezed, or very fast, have so many.)
+        max_hits: of one body in one step. A body that has used them up bounces no more in that
+            step: it rests on what it hits. `capped` counts that, and there is a `HitLimitWarning`.
+            (Only bodies that are squeezed, or very fast, have so many.)
     """
 
     def __init__(
-        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 10_000
+        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 1000
     ) -> None:
         # The scene holds what users edit. From the first step on, until the next edit, the built
         # form is ahead of it.
@@ -179,7 +179,7 @@ class World:
 
     @property
     def capped(self) -> int:
-        """How often a body has used up its hits of a step."""
+        """How often a body has used up its hits of a step, or had no room."""
         return (self._built or self._scene).capped
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
@@ -208,9 +208,9 @@ class World:
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
-                f"a body used up the hits of a step (max_hits={self._scene.max_hits}), and stayed "
-                "where it was for the rest of it. It is squeezed, or so fast that it needs shorter "
-                "steps or a larger max_hits",
+                "a body has no room, or used up the hits of a step (max_hits="
+                f"{self._scene.max_hits}); for the rest of it, it did not bounce. If it is only "
+                "very fast, it needs shorter steps or a larger max_hits",
                 HitLimitWarning,
                 stacklevel=2,
             )
