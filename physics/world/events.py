@@ -6,20 +6,22 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, overlap_between
 from ..pairs.touching_point import touching_point
 from .clock_time import is_earlier, later
+from .lookup.inside import has_free_pair, put_inside, take_outside
+from .lookup.tree import NO_ONE
 from .prediction import motion_at
 from .records import BEGIN, END, Hits
 from .view import (
     WorldView,
     clock_of,
     edges_of,
+    first_inside_of,
     header_of,
     inside_of,
-    motions_after_step_of,
-    motions_of,
-    moving_of,
+    pairs_of,
     progress_of,
-    sensing_of,
     shapes_of,
+    shown_after_step_of,
+    shown_of,
     traits_of,
 )
 
@@ -27,8 +29,8 @@ from .view import (
 @kernel
 def has_room(world: WorldView, hits: Hits, count: int) -> bool:
     """Return whether there is room for all that one event may cause; note it if not."""
-    # A hit, and the sensors that its two bodies leave.
-    if hits.shape[0] - count > 2 * header_of(world).sensors:
+    # A hit, and all that is inside sensors may leave; or one more is inside.
+    if hits.shape[0] - count > inside_of(world).count and has_free_pair(world):
         return True
     progress_of(world).full = 1
     return False
@@ -101,11 +103,10 @@ def enter_sensor(
     normal_y: float,
 ) -> int:
     """Note that a body enters a sensor, in either order; return how many events there are."""
-    bodies = traits_of(world).shape[0]
     if traits_of(world)[a].sensor >= 0:
-        inside_of(world)[traits_of(world)[a].sensor * bodies + b] = 1
+        put_inside(world, a, b)
     else:
-        inside_of(world)[traits_of(world)[b].sensor * bodies + a] = 1
+        put_inside(world, b, a)
     x, y = contact_point(world, a, b, now, now_low, normal_x, normal_y)
     return write_event(
         world, hits, count, world_index, BEGIN, now, a, b, normal_x, normal_y, x, y, 0.0
@@ -115,18 +116,26 @@ def enter_sensor(
 @kernel
 def forget_moved(world: WorldView) -> None:
     """Empty the sensors of bodies that the user moved between two steps, and moved sensors."""
-    bodies = traits_of(world).shape[0]
-    motions, after_step = motions_of(world), motions_after_step_of(world)
-    inside = inside_of(world)
-    for slot in range(motions.shape[0]):
-        if motions[slot].x == after_step[slot].x and motions[slot].y == after_step[slot].y:
-            continue
-        moved = moving_of(world)[slot]
-        own = traits_of(world)[moved].sensor
-        for row in range(sensing_of(world).shape[0]):
-            inside[row * bodies + moved] = 0
-            if row == own:
-                inside[row * bodies : (row + 1) * bodies] = 0
+    firsts, pairs = first_inside_of(world), pairs_of(world)
+    if inside_of(world).count == 0:
+        return
+    for body in range(firsts.shape[0]):
+        place = firsts[body]
+        while place != NO_ONE:
+            pair = pairs[place]
+            place = pair.next
+            if _is_placed(world, body) or _is_placed(world, pair.sensor):
+                take_outside(world, pair.sensor, body)
+
+
+@kernel
+def _is_placed(world: WorldView, body: int) -> bool:
+    """Return whether a user moved a body since the last step."""
+    slot = traits_of(world)[body].slot
+    if slot < 0:
+        return False
+    shown, after_step = shown_of(world)[slot], shown_after_step_of(world)[slot]
+    return bool(shown.x != after_step.x or shown.y != after_step.y)
 
 
 @kernel
@@ -165,7 +174,7 @@ def leave_sensor(
     )
     if back == math.inf:
         back = 0.0
-    inside_of(world)[here.sensor * traits_of(world).shape[0] + body] = 0
+    take_outside(world, sensor, body)
     exit_time, exit_low = later(now, now_low, -back)
     begin, begin_low = clock_of(world).time, clock_of(world).time_low
     if is_earlier(exit_time, exit_low, begin, begin_low):
@@ -187,11 +196,14 @@ def leave_sensors(
     now_low: float,
 ) -> int:
     """Note which sensors a body has left, before it changes its course."""
-    bodies = traits_of(world).shape[0]
-    for row in range(sensing_of(world).shape[0]):
-        if inside_of(world)[row * bodies + body]:
-            sensor = sensing_of(world)[row]
-            count = leave_sensor(world, hits, count, world_index, sensor, body, now, now_low)
+    if header_of(world).sensors == 0:
+        return count
+    pairs = pairs_of(world)
+    place = first_inside_of(world)[body]
+    while place != NO_ONE:
+        pair = pairs[place]
+        place = pair.next
+        count = leave_sensor(world, hits, count, world_index, pair.sensor, body, now, now_low)
     return count
 
 
@@ -199,16 +211,10 @@ def leave_sensors(
 def leave_all_sensors(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
     """Note which bodies left which sensors in this step; return how many events there are."""
     progress = progress_of(world)
-    sensing = sensing_of(world)
-    inside = inside_of(world)
-    bodies = traits_of(world).shape[0]
-    end, end_low = progress.end, progress.end_low
-    for row in range(sensing.shape[0]):
-        for body in range(bodies):
-            if inside[row * bodies + body]:
-                if progress.full or not has_room(world, hits, count):
-                    return count
-                count = leave_sensor(
-                    world, hits, count, world_index, sensing[row], body, end, end_low
-                )
+    if inside_of(world).count == 0:
+        return count
+    if progress.full or not has_room(world, hits, count):
+        return count
+    for body in range(first_inside_of(world).shape[0]):
+        count = leave_sensors(world, hits, count, world_index, body, progress.end, progress.end_low)
     return count

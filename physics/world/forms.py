@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from ..body import Body, FloatArray
 from ..errors import InseparableError
-from .records import Clock
+from .lookup.inside import inside_blocks, pairs_inside
+from .records import Clock, Motion, Plan
 from .setup import BodySpec, ByteArray, build_setup, inseparable_pair
 from .states import Stepper
 
@@ -95,16 +95,21 @@ class Built:
         self.states: ByteArray = self.setup.new_state(1)
         self.motions: FloatArray = self.setup.motion_view(self.states)[0]
         self.motions[:] = self._first_motions[self.setup.moving]
-        self.setup.motions_after_step_view(self.states)[0] = self.motions
-        self._inside: npt.NDArray[np.uint8] = self.setup.inside_view(self.states)[0]
-        for row, sensor in enumerate(self.setup.sensing.tolist()):
-            for body in range(len(scene.specs)):
-                self._inside[row, body] = (sensor, body) in scene.inside
+        for part in ("shown_after_step", "motions"):
+            self.setup.records(self.states, part, Motion)[0] = self.motions.view(Motion)[:, 0]
+        plans = self.setup.records(self.states, "plans", Plan)[0]
+        plans["at"], plans["at_low"] = scene.time
+        plans["fresh"] = 1
         self.clock = self.states[0, : Clock.itemsize].view(Clock)
         self.clock["time"], self.clock["time_low"] = scene.time
         self.clock["capped"] = scene.capped
+        self.clock["fresh"] = 1
         self.warned = scene.capped
-        self.stepper = Stepper(self.setup, self.states)
+        pairs = np.array(sorted((body, sensor) for sensor, body in scene.inside), np.int64)
+        blocks = inside_blocks(
+            [pairs.reshape(-1, 2)[:, ::-1]], len(scene.specs), len(self.setup.sensing) > 0
+        )
+        self.stepper = Stepper(self.setup, self.states, blocks)
 
     @property
     def capped(self) -> int:
@@ -119,14 +124,17 @@ class Built:
 
     def forget_inside(self, index: int) -> None:
         """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        self._inside[:, index] = 0
-        self._inside[self.setup.sensing == index] = 0
+        (pairs,) = pairs_inside(self.stepper.insides)
+        pairs = pairs[(pairs != index).all(axis=1)]
+        self.stepper.insides = inside_blocks(
+            [pairs], len(self.setup.traits), len(self.setup.sensing) > 0
+        )
         self.clock["planned"] = 0
 
     def write_back(self, scene: Scene) -> None:
         """Write into the scene what stepping has changed."""
         scene.motions = self.all_motions().tolist()
-        rows, bodies = np.nonzero(self._inside)
-        scene.inside = set(zip(self.setup.sensing[rows].tolist(), bodies.tolist(), strict=True))
+        (pairs,) = pairs_inside(self.stepper.insides)
+        scene.inside = {(sensor, body) for sensor, body in pairs.tolist()}
         scene.time = (float(self.clock["time"][0]), float(self.clock["time_low"][0]))
         scene.capped = self.capped

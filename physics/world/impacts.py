@@ -1,12 +1,15 @@
 """The events of a continuous step, each at its exact time, in the order of time."""
 
+import math
+
 from ..kernels import kernel
 from ..pairs.response import bounce_velocities
 from .clock_time import is_earlier
 from .events import contact_point, enter_sensor, has_room, leave_sensors, write_event
-from .grid import enter, leave
+from .lookup.boxes import first_margin, fit_here
+from .lookup.overrides import find_override
 from .prediction import find_stale, is_capped, is_inside, motion_at, predict
-from .records import CROSS_X, HIT, MEET, NOTHING, Hits
+from .records import HIT, MEET, Hits
 from .view import (
     WorldView,
     clock_of,
@@ -26,8 +29,8 @@ def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> in
     """Carry out all plans until the step ends, the earliest first; return how many hits there are.
 
     It stops earlier if there is no room for more hits, and can be called again to continue. It
-    always ends: a body has no more hits than `max_hits`, and between two of them it crosses each
-    border and enters each sensor at most once.
+    always ends: a body has no more hits than `max_hits`, and between two of them it enters each
+    sensor at most once, and leaves boxes of which each is twice as large as the one before.
     """
     progress = progress_of(world)
     plans = plans_of(world)
@@ -42,22 +45,21 @@ def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> in
         if plan.kind == MEET:
             count = _meet(world, hits, count, world_index, slot)
         else:
-            _cross_border(world, slot)
+            _leave_box(world, slot)
     return count
 
 
 @kernel
-def _cross_border(world: WorldView, slot: int) -> None:
-    """Move a body to the next cell of the grid, as it planned."""
+def _leave_box(world: WorldView, slot: int) -> None:
+    """Let a body leave its box and get another one, as it planned."""
     plan = plans_of(world)[slot]
-    motion = motions_of(world)[slot]
-    leave(world, slot)
-    if plan.kind == CROSS_X:
-        plan.column += 1 if motion.vx > 0.0 else -1
-    else:
-        plan.row += 1 if motion.vy > 0.0 else -1
-    enter(world, slot)
-    predict(world, slot, plan.time, plan.time_low, False)
+    now, now_low = plan.time, plan.time_low
+    margin = first_margin(world, slot)
+    if plan.fitted >= clock_of(world).time:
+        # Twice in a step.
+        margin = max(margin, 2.0 * plan.margin)
+    fit_here(world, slot, now, now_low, margin)
+    predict(world, slot, now, now_low, False)
 
 
 @kernel
@@ -68,6 +70,8 @@ def _meet(world: WorldView, hits: Hits, count: int, world_index: int, slot: int)
     b = plan.partner
     now, now_low = plan.time, plan.time_low
     normal_x, normal_y = plan.normal_x, plan.normal_y
+    if a > b:  # Either of the two may have planned it. No bit depends on which.
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     one, other = traits_of(world)[a], traits_of(world)[b]
     if one.sensor >= 0 or other.sensor >= 0:
         # If both move, both may have planned it: the second one finds it done.
@@ -129,12 +133,10 @@ def _velocity(world: WorldView, slot: int) -> tuple[float, float]:
 @kernel
 def _restitution(world: WorldView, a: int, b: int) -> float:
     """Return the restitution of a pair: its own, or the product of the bodies' values."""
-    low, high = min(a, b), max(a, b)
-    for index in range(overrides_of(world).shape[0]):
-        override = overrides_of(world)[index]
-        if override.a == low and override.b == high:
-            return float(override.restitution)
-    return float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
+    own = find_override(overrides_of(world), min(a, b), max(a, b))
+    if math.isnan(own):
+        return float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
+    return own
 
 
 @kernel
@@ -157,8 +159,6 @@ def _plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float
     stale = stale_of(world)
     for body in (a, b):
         trait = traits[body]
-        if trait.slot >= 0:
-            plans[trait.slot].kind = NOTHING
         # A body of infinite mass keeps its course: plans to meet it still hold.
         if trait.inverse_mass > 0.0:
             plans[trait.slot].hits += 1
@@ -166,8 +166,12 @@ def _plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float
                 clock_of(world).capped += 1
     count = 0
     for body in (a, b):
+        slot = traits[body].slot
         if traits[body].inverse_mass > 0.0:
-            count = find_stale(world, traits[body].slot, count)
+            count = find_stale(world, slot, count)
+            margin = first_margin(world, slot)
+            if plans[slot].margin > 2.0 * margin:
+                fit_here(world, slot, now, now_low, max(margin, 0.5 * plans[slot].margin))
     for body in (a, b):
         if traits[body].slot >= 0:
             predict(world, traits[body].slot, now, now_low, False)

@@ -10,15 +10,17 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
 from ..shapes.records import Edges, ShapeRecord
 from ..tolerances import NO_APPROACH, SAME_POINT
-from .clock_time import elapsed, later
-from .grid import find_near, time_to_cross
-from .records import CROSS_X, CROSS_Y, MEET, NOTHING, PlanRecord, TraitRecord
+from .clock_time import elapsed, is_earlier, later
+from .lookup.boxes import time_to_leave
+from .lookup.inside import find_inside
+from .lookup.neighbours import find_near
+from .lookup.tree import NO_ONE
+from .records import LEAVE, MEET, NOTHING, MotionRecord, PlanRecord, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
     edges_of,
     header_of,
-    inside_of,
     motions_of,
     moving_of,
     near_of,
@@ -54,11 +56,10 @@ def motion_at(
 @kernel
 def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
     """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
-    bodies = traits_of(world).shape[0]
     if one.sensor >= 0:
-        return bool(inside_of(world)[one.sensor * bodies + b])
+        return find_inside(world, a, b) != NO_ONE
     if other.sensor >= 0:
-        return bool(inside_of(world)[other.sensor * bodies + a])
+        return find_inside(world, b, a) != NO_ONE
     return False
 
 
@@ -111,90 +112,178 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
             consider this one).
     """
     plan = plans_of(world)[slot]
-    plan.kind = NOTHING
+    _forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
     if not is_capped(world, slot):
         _find_event(world, slot, now, now_low, only_later)
+    if plan.kind == MEET:
+        _join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
+def _join_suitors(world: WorldView, slot: int) -> None:
+    """Put a body into the list of those that plan to meet its partner, if the partner moves."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    theirs = traits_of(world)[plan.partner].slot
+    if theirs < 0:
+        return
+    partner = plans[theirs]
+    plan.previous_suitor = NO_ONE
+    plan.next_suitor = partner.suitor
+    if partner.suitor != NO_ONE:
+        plans[partner.suitor].previous_suitor = slot
+    partner.suitor = slot
+
+
+@kernel
+def _forget_partner(world: WorldView, slot: int) -> None:
+    """Let a body plan nothing, and take it out of the list in which it is."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    if plan.kind == MEET:
+        theirs = traits_of(world)[plan.partner].slot
+        if theirs >= 0:
+            if plan.next_suitor != NO_ONE:
+                plans[plan.next_suitor].previous_suitor = plan.previous_suitor
+            if plan.previous_suitor != NO_ONE:
+                plans[plan.previous_suitor].next_suitor = plan.next_suitor
+            else:
+                plans[theirs].suitor = plan.next_suitor
+    plan.kind = NOTHING
+
+
+@kernel
+def _place(
+    motion: MotionRecord, plan: PlanRecord, now: float, now_low: float
+) -> tuple[float, float]:
+    """Return the position at a time of a body that is not capped."""
+    since = elapsed(now, now_low, plan.at, plan.at_low)
+    return motion.x + motion.vx * since, motion.y + motion.vy * since
+
+
+@kernel
+def _meeting(
+    world: WorldView,
+    slot: int,
+    other: int,
+    since: float,
+    since_low: float,
+    best: float,
+    best_low: float,
+) -> tuple[float, float, float, float]:
+    """Return (duration, normal_x, normal_y, slack) of when two bodies meet, seen from a time.
+
+    The duration is inf if they don't meet before the time ``best`` plus the slack, within which two
+    meetings with static bodies count as simultaneous. Bodies that touch or overlap meet only if
+    they have to bounce.
+    """
+    shapes, plans, motions = shapes_of(world), plans_of(world), motions_of(world)
+    own, trait = traits_of(world)[moving_of(world)[slot]], traits_of(world)[other]
+    motion = motions[slot]
+    x, y = _place(motion, plans[slot], since, since_low)
+    dx, dy, ux, uy, speed = trait.home_x - x, trait.home_y - y, -motion.vx, -motion.vy, 0.0
+    slack = 0.0
+    if trait.slot >= 0:
+        theirs = motions[trait.slot]
+        their_x, their_y = _place(theirs, plans[trait.slot], since, since_low)
+        dx, dy, ux, uy = their_x - x, their_y - y, theirs.vx - motion.vx, theirs.vy - motion.vy
+        speed = abs(theirs.vx) + abs(theirs.vy)
+    elif ux * ux + uy * uy > 0.0:
+        coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
+        slack = SAME_POINT * coordinates / math.sqrt(ux * ux + uy * uy)
+    left = elapsed(best, best_low, since, since_low) + slack
+    if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, left):
+        return math.inf, 0.0, 0.0, slack
+    time, normal_x, normal_y = impact_between(
+        shapes, edges_of(world), own.collider, trait.collider, dx, dy, ux, uy, left
+    )
+    if time == 0.0 and own.sensor < 0 and trait.sensor < 0:
+        progress_of(world).touching = 1
+        speed += abs(motion.vx) + abs(motion.vy)
+        if not _approaches(ux, uy, normal_x, normal_y, speed):
+            return math.inf, 0.0, 0.0, slack
+    return time, normal_x, normal_y, slack
+
+
+@kernel
 def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
-    """Set a body's plan to its first event, if there is one."""
-    shapes = shapes_of(world)
-    edges = edges_of(world)
-    traits = traits_of(world)
-    near = near_of(world)
-    plan = plans_of(world)[slot]
+    """Set a body's plan to its first event, if there is one.
+
+    A pair's time of impact is computed from when both bodies began their courses, whenever that is.
+    So nothing but the two courses has an influence on it: no bit depends on the broad phase, or on
+    the length of steps.
+    """
+    traits, plans, near = traits_of(world), plans_of(world), near_of(world)
+    plan = plans[slot]
     body = moving_of(world)[slot]
     own = traits[body]
-    x, y, vx, vy = motion_at(world, body, now, now_low)
-    best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
+    best, best_low = _plan_to_leave(world, slot, now, now_low)
     for index in range(find_near(world, slot, only_later)):
         other = near[index]
         trait = traits[other]
-        their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
-        dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
-        slack = 0.0
-        if trait.slot < 0 and ux * ux + uy * uy > 0.0:
-            coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-            slack = SAME_POINT * coordinates / math.sqrt(ux * ux + uy * uy)
-        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
-            continue
-        if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
-            continue
-        time, normal_x, normal_y = impact_between(
-            shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, best + slack
-        )
-        if time == math.inf:
-            continue
-        if time == 0.0 and own.sensor < 0 and trait.sensor < 0:
-            progress_of(world).touching = 1
-            speed = abs(vx) + abs(vy) + abs(their_vx) + abs(their_vy)
-            if not _approaches(ux, uy, normal_x, normal_y, speed):
+        since, since_low = plan.at, plan.at_low
+        if trait.slot >= 0:
+            theirs = plans[trait.slot]
+            if theirs.hits >= header_of(world).max_hits:
                 continue
-        if plan.kind == MEET and abs(time - best) <= slack:
+            if is_earlier(since, since_low, theirs.at, theirs.at_low):
+                since, since_low = theirs.at, theirs.at_low
+        time, normal_x, normal_y, slack = _meeting(
+            world, slot, other, since, since_low, best, best_low
+        )
+        if time == math.inf or is_inside(world, own, body, trait, other):
+            continue
+        begin, begin_low = later(since, since_low, time)
+        if is_earlier(begin, begin_low, now, now_low):
+            # That meeting is over: the body has left the sensor, for instance.
+            time, normal_x, normal_y, slack = _meeting(
+                world, slot, other, now, now_low, best, best_low
+            )
+            if time == math.inf:
+                continue
+            begin, begin_low = later(now, now_low, time)
+        if plan.kind == MEET and abs(elapsed(begin, begin_low, best, best_low)) <= slack:
             is_first = _is_straighter(world, plan, other, normal_x, normal_y)
         else:
-            # At the same time, a meeting comes before a crossing. Of two meetings, the order of the
-            # bodies decides, not the order of the grid.
-            is_first = time < best or plan.kind != MEET or other < plan.partner
+            # At the same time, a meeting comes before leaving. Of two meetings, the order of the
+            # bodies decides.
+            is_first = is_earlier(begin, begin_low, best, best_low) or (
+                begin == best
+                and begin_low == best_low
+                and (plan.kind != MEET or other < plan.partner)
+            )
         if is_first:
-            best = time
+            best, best_low = begin, begin_low
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
             plan.normal_y = normal_y
     if plan.kind != NOTHING:
-        plan.time, plan.time_low = later(now, now_low, best)
+        plan.time, plan.time_low = best, best_low
 
 
 @kernel
-def _find_crossing(
-    world: WorldView, plan: PlanRecord, x: float, y: float, vx: float, vy: float
-) -> float:
-    """Plan to leave the cell, if the body does; return in how long."""
-    header = header_of(world)
-    time_x = time_to_cross(x, vx, header.left, header.cell, plan.column, header.columns)
-    time_y = time_to_cross(y, vy, header.bottom, header.cell, plan.row, header.rows)
-    time = min(time_x, time_y)
-    if time < math.inf:
-        plan.kind = CROSS_X if time_x <= time_y else CROSS_Y
-    return time
+def _plan_to_leave(world: WorldView, slot: int, now: float, now_low: float) -> tuple[float, float]:
+    """Plan to leave the box, if the body does; return when, as a time in two numbers."""
+    plan = plans_of(world)[slot]
+    x, y, vx, vy = motion_at(world, moving_of(world)[slot], now, now_low)
+    duration = time_to_leave(plan, x, y, vx, vy)
+    if duration == math.inf:
+        return math.inf, 0.0
+    plan.kind = LEAVE
+    return later(now, now_low, duration)
 
 
 @kernel
 def find_stale(world: WorldView, slot: int, count: int) -> int:
-    """Append the bodies to ``stale`` that planned to meet one whose course has changed."""
-    body = moving_of(world)[slot]
-    for index in range(find_near(world, slot, False)):
-        other = traits_of(world)[near_of(world)[index]].slot
-        if other < 0:
-            continue
-        plan = plans_of(world)[other]
-        if plan.kind == MEET and plan.partner == body:
-            plan.kind = NOTHING
-            stale_of(world)[count] = other
-            count += 1
+    """Append the bodies to ``stale`` that plan to meet one whose course has changed."""
+    plans, stale = plans_of(world), stale_of(world)
+    suitor = plans[slot].suitor
+    while suitor != NO_ONE:
+        stale[count] = suitor
+        count += 1
+        suitor = plans[suitor].next_suitor
     return count

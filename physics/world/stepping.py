@@ -4,24 +4,27 @@ import math
 
 from ..kernels import kernel
 from ..kernels.borrowed import borrowed
-from .clock_time import elapsed, later
+from .clock_time import later
 from .events import forget_moved, leave_all_sensors
-from .grid import enter_all
 from .impacts import move_to, run_events
+from .lookup.boxes import first_margin, fit_all, fit_here
+from .lookup.tree import NO_ONE
 from .overlaps import relax_overlaps, resolve_overlaps
-from .prediction import predict
+from .prediction import find_stale, motion_at, predict
 from .records import NOTHING, Block, Blocks, Hit, Hits, Motions
 from .tournament import start_tournament
 from .view import (
     WorldView,
     clock_of,
     header_of,
-    motions_after_step_of,
     motions_of,
     moving_of,
     open_world,
     plans_of,
     progress_of,
+    shown_after_step_of,
+    shown_of,
+    stale_of,
     winners_of,
 )
 
@@ -33,22 +36,28 @@ HIT_SIZE = Hit.itemsize
 
 @kernel
 def step_worlds(
-    states: Blocks, workspace: Block, buffer: Block, count: int, dt: float, steps: int
+    states: Blocks,
+    insides: Blocks,
+    workspace: Block,
+    buffer: Block,
+    count: int,
+    dt: float,
+    steps: int,
 ) -> int:
     """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
 
-    If the buffer is full, it stops early and returns -1 - count. Call it again with a larger buffer
-    that holds the same hits, and it continues. It returns `INVALID` if a position or velocity of a
-    world is not finite, or has become so, or its time.
+    If the buffer or a block of ``insides`` is full, it stops early and returns -1 - count. Call it
+    again with larger ones that hold the same, and it continues. It returns `INVALID` if a position
+    or velocity of a world is not finite, or has become so, or its time.
 
     Args:
-        states: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
+        states, insides: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
         buffer: uint8 [bytes], room for `Hit` records, of which ``count`` are there already.
         count, dt, steps: see above.
     """
     hits = borrowed(buffer, 0, buffer.shape[0] // HIT_SIZE, Hit)
     for world_index in range(states.shape[0]):
-        world = open_world(states[world_index], workspace)
+        world = open_world(states[world_index], insides[world_index], workspace)
         progress = progress_of(world)
         if world_index < progress.world:
             continue
@@ -82,7 +91,7 @@ def step_worlds(
 def begin_step(world: WorldView, dt: float) -> bool:
     """Prepare the plans of a step; return False, and do nothing, if a number is not finite.
 
-    Plans from the last step still hold if nobody has written to the motions since.
+    Plans from the last step still hold, but for the bodies that somebody has moved since.
     """
     clock = clock_of(world)
     progress = progress_of(world)
@@ -90,25 +99,52 @@ def begin_step(world: WorldView, dt: float) -> bool:
     if not abs(progress.end) < math.inf:
         return False
     progress.crowded = 0
-    if clock.planned and _are_equal(motions_of(world), motions_after_step_of(world)):
+    is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
+    if is_calm and clock.planned:
         return True
-    if not _are_finite(motions_of(world)):
+    if not _are_finite(shown_of(world)):
         return False
     if header_of(world).sensors > 0:
         forget_moved(world)
-    clock.planned = 0
-    _clear_plans(world)
+    _adopt_shown(world)
     if header_of(world).continuous:
-        enter_all(world)
-        _predict_all(world)
+        _plan(world, clock.planned == 0)
         if progress.touching and relax_overlaps(world):
-            _predict_all(world)
+            _plan(world, False)
+        clock.planned = 1
+        _end_freshness(world)
     else:
         progress.next_slot = 0
         progress.next_near = 0
         _move_all(world)
-        enter_all(world)
+        fit_all(world, progress.end, progress.end_low)
     return True
+
+
+@kernel
+def _adopt_shown(world: WorldView) -> None:
+    """Let every body that a user has moved begin a new course, and be fresh."""
+    clock, plans = clock_of(world), plans_of(world)
+    motions, shown, after_step = motions_of(world), shown_of(world), shown_after_step_of(world)
+    for slot in range(plans.shape[0]):
+        seen, after, plan = shown[slot], after_step[slot], plans[slot]
+        if seen.x != after.x or seen.y != after.y or seen.vx != after.vx or seen.vy != after.vy:
+            motion = motions[slot]
+            motion.x, motion.y, motion.vx, motion.vy = seen.x, seen.y, seen.vx, seen.vy
+            after.x, after.y, after.vx, after.vy = seen.x, seen.y, seen.vx, seen.vy
+            plan.at, plan.at_low = clock.time, clock.time_low
+            plan.fresh = 1
+            clock.fresh = 1
+
+
+@kernel
+def _end_freshness(world: WorldView) -> None:
+    """Note that the plans of all bodies hold, unless relaxation has left overlaps."""
+    plans = plans_of(world)
+    if not progress_of(world).crowded:
+        clock_of(world).fresh = 0
+        for slot in range(plans.shape[0]):
+            plans[slot].fresh = 0
 
 
 @kernel
@@ -136,21 +172,6 @@ def _are_finite(motions: Motions) -> bool:
 
 
 @kernel
-def _clear_plans(world: WorldView) -> None:
-    """Let every body plan nothing, and be where its motion says now."""
-    clock = clock_of(world)
-    plans = plans_of(world)
-    for slot in range(plans.shape[0]):
-        plan = plans[slot]
-        plan.at = clock.time
-        plan.at_low = clock.time_low
-        plan.hits = 0
-        plan.time = math.inf
-        plan.time_low = 0.0
-        plan.kind = NOTHING
-
-
-@kernel
 def _move_all(world: WorldView) -> None:
     """Move every body to its position at the end of the step."""
     progress = progress_of(world)
@@ -160,18 +181,57 @@ def _move_all(world: WorldView) -> None:
 
 
 @kernel
-def _predict_all(world: WorldView) -> None:
-    """Make all plans, at the beginning of a step."""
-    clock = clock_of(world)
+def _plan(world: WorldView, anew: bool) -> None:
+    """Make the plans of fresh bodies, and of those that planned to meet them; or all plans."""
+    plans = plans_of(world)
     progress_of(world).touching = 0
-    start_tournament(winners_of(world), plans_of(world))
-    for slot in range(plans_of(world).shape[0]):
+    fresh = 0
+    for slot in range(plans.shape[0]):
+        fresh += plans[slot].fresh
+    if anew or 2 * fresh > plans.shape[0]:
+        _plan_all(world)
+    else:
+        _plan_fresh(world)
+
+
+@kernel
+def _plan_all(world: WorldView) -> None:
+    """Make all boxes and all plans."""
+    clock = clock_of(world)
+    plans = plans_of(world)
+    for slot in range(plans.shape[0]):
+        plan = plans[slot]
+        plan.hits = 0
+        plan.time = math.inf
+        plan.time_low = 0.0
+        plan.kind = NOTHING
+        plan.suitor = NO_ONE
+    fit_all(world, clock.time, clock.time_low)
+    start_tournament(winners_of(world), plans)
+    for slot in range(plans.shape[0]):
         predict(world, slot, clock.time, clock.time_low, True)
 
 
 @kernel
+def _plan_fresh(world: WorldView) -> None:
+    """Make the plans of fresh bodies, and of those that planned to meet them."""
+    clock, plans, stale = clock_of(world), plans_of(world), stale_of(world)
+    count = 0
+    for slot in range(plans.shape[0]):
+        if plans[slot].fresh:
+            count = find_stale(world, slot, count)
+            fit_here(world, slot, clock.time, clock.time_low, first_margin(world, slot))
+    for slot in range(plans.shape[0]):
+        if plans[slot].fresh:
+            predict(world, slot, clock.time, clock.time_low, False)
+    for index in range(count):
+        if not plans[stale[index]].fresh:
+            predict(world, stale[index], clock.time, clock.time_low, False)
+
+
+@kernel
 def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
-    """Move every body to its position at the end; return how many hits there are.
+    """Show the position of every body at the end; return how many hits there are.
 
     It returns `INVALID` if a position or velocity has become too large for a number.
     """
@@ -181,23 +241,22 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
     if progress.full:
         return count
     end, end_low = progress.end, progress.end_low
-    clock.time, clock.time_low = end, end_low
-    clock.planned = header.continuous and not progress.crowded
-    motions, plans = motions_of(world), plans_of(world)
-    after_step = motions_after_step_of(world)
+    motions, plans, moving = motions_of(world), plans_of(world), moving_of(world)
+    shown, after_step = shown_of(world), shown_after_step_of(world)
     for slot in range(header.movers):
-        motion, after, plan = motions[slot], after_step[slot], plans[slot]
-        if plan.hits < header.max_hits:
-            since = elapsed(end, end_low, plan.at, plan.at_low)
-            motion.x += motion.vx * since
-            motion.y += motion.vy * since
+        motion, plan, seen, after = motions[slot], plans[slot], shown[slot], after_step[slot]
+        x, y, vx, vy = motion_at(world, moving[slot], end, end_low)
+        if plan.hits >= header.max_hits or not header.continuous:
+            # It stays where it is for the rest of this step, and flies on from there.
+            motion.x, motion.y = x, y
             plan.at, plan.at_low = end, end_low
-        else:
-            # It stays where it is for the rest of this step, and the next step makes new plans.
-            clock.planned = 0
+            plan.fresh = 1
+            clock.fresh = 1
         plan.hits = 0
-        after.x, after.y, after.vx, after.vy = motion.x, motion.y, motion.vx, motion.vy
-    if not _are_finite(motions):
+        seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
+        after.x, after.y, after.vx, after.vy = x, y, vx, vy
+    clock.time, clock.time_low = end, end_low
+    if not _are_finite(shown):
         clock.planned = 0
         return INVALID
     return count

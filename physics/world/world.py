@@ -259,7 +259,7 @@ class World:
     def snapshot(self) -> bytes:
         """Return all that changes as the world is stepped, as bytes for `restore`."""
         built = self.built()
-        return pack_states(built.states, built.setup)
+        return pack_states(built.states, [built.stepper.insides], built.setup)
 
     @alone
     def restore(self, snapshot: bytes) -> None:
@@ -269,14 +269,19 @@ class World:
             ValueError: if it is corrupt, or of another world. This world does not change then.
         """
         built = self.built()
-        unpack_states(snapshot, built.states, built.setup)
+        built.stepper.insides = unpack_states(snapshot, built.states, built.setup)
         built.warned = built.capped
 
     @alone
-    def copies(self, count: int) -> tuple[Setup, ByteArray]:
-        """Return what does not change as the world is stepped, and copies of what does."""
+    def copies(self, count: int) -> tuple[Setup, ByteArray, ByteArray]:
+        """Return what does not change as the world is stepped, and copies of what does.
+
+        Returns:
+            (setup, states, insides), both uint8 [count, bytes].
+        """
         built = self.built()
-        return built.setup, np.repeat(built.states, count, axis=0)
+        insides = np.repeat(built.stepper.insides, count, axis=0)
+        return built.setup, np.repeat(built.states, count, axis=0), insides
 
     def built(self) -> Built:
         """Return the form of the world that kernels step; it is built if need be."""
