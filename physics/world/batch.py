@@ -32,8 +32,7 @@ class WorldBatch:
     Attributes:
         moving: int64 [m], the indices of the bodies that move.
         positions, velocities: float64 [num_worlds, m, 2], of these bodies. Views of the states:
-            write to them to change the next step. A body with a new position is inside no sensor
-            until a step finds it there.
+            write to them to change the next step.
     """
 
     def __init__(self, world: World, num_worlds: int, *, threads: int = 1) -> None:

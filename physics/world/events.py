@@ -18,10 +18,9 @@ from .view import (
     header_of,
     inside_of,
     pairs_of,
+    plans_of,
     progress_of,
     shapes_of,
-    shown_after_step_of,
-    shown_of,
     traits_of,
 )
 
@@ -114,28 +113,62 @@ def enter_sensor(
 
 
 @kernel
-def forget_moved(world: WorldView) -> None:
-    """Empty the sensors of bodies that the user moved between two steps, and moved sensors."""
-    firsts, pairs = first_inside_of(world), pairs_of(world)
+def leave_placed(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
+    """Note which sensors bodies are no longer inside as a step begins, because somebody moved one.
+
+    It returns how many events there are. A body that was placed inside again has not left.
+    """
+    clock, firsts, pairs = clock_of(world), first_inside_of(world), pairs_of(world)
     if inside_of(world).count == 0:
-        return
+        return count
     for body in range(firsts.shape[0]):
         place = firsts[body]
         while place != NO_ONE:
-            pair = pairs[place]
-            place = pair.next
-            if _is_placed(world, body) or _is_placed(world, pair.sensor):
-                take_outside(world, pair.sensor, body)
+            sensor = pairs[place].sensor
+            place = pairs[place].next
+            if not (_is_fresh(world, body) or _is_fresh(world, sensor)):
+                continue
+            if not _overlap(world, sensor, body):
+                take_outside(world, sensor, body)
+                x, y, _, _ = motion_at(world, body, clock.time, clock.time_low)
+                count = write_event(
+                    world,
+                    hits,
+                    count,
+                    world_index,
+                    END,
+                    clock.time,
+                    sensor,
+                    body,
+                    0.0,
+                    0.0,
+                    x,
+                    y,
+                    0.0,
+                )
+    return count
 
 
 @kernel
-def _is_placed(world: WorldView, body: int) -> bool:
-    """Return whether a user moved a body since the last step."""
+def _is_fresh(world: WorldView, body: int) -> bool:
+    """Return whether a body has begun a new course since the last step."""
     slot = traits_of(world)[body].slot
-    if slot < 0:
-        return False
-    shown, after_step = shown_of(world)[slot], shown_after_step_of(world)[slot]
-    return bool(shown.x != after_step.x or shown.y != after_step.y)
+    return bool(slot >= 0 and plans_of(world)[slot].fresh)
+
+
+@kernel
+def _overlap(world: WorldView, a: int, b: int) -> bool:
+    """Return whether two bodies overlap, or touch and are about to, as a step begins."""
+    now, now_low = clock_of(world).time, clock_of(world).time_low
+    one, other = traits_of(world)[a].collider, traits_of(world)[b].collider
+    x, y, vx, vy = motion_at(world, a, now, now_low)
+    their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
+    dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
+    shapes, edges = shapes_of(world), edges_of(world)
+    if overlap_between(shapes, edges, one, other, dx, dy):
+        return True
+    time, _, _ = impact_between(shapes, edges, one, other, dx, dy, ux, uy, 0.0)
+    return bool(time == 0.0)
 
 
 @kernel

@@ -59,10 +59,6 @@ class Scene:
         """Return x, y, vx, vy of all bodies, float64 [n, 4], a copy."""
         return np.array(self.motions, np.float64).reshape(-1, 4)
 
-    def forget_inside(self, index: int) -> None:
-        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        self.inside = {pair for pair in self.inside if index not in pair}
-
 
 class Built:
     """A world as kernels step it, made from a scene.
@@ -121,15 +117,6 @@ class Built:
         motions = self._first_motions.copy()
         motions[self.setup.moving] = self.motions
         return motions
-
-    def forget_inside(self, index: int) -> None:
-        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        (pairs,) = pairs_inside(self.stepper.insides)
-        pairs = pairs[(pairs != index).all(axis=1)]
-        self.stepper.insides = inside_blocks(
-            [pairs], len(self.setup.traits), len(self.setup.sensing) > 0
-        )
-        self.clock["planned"] = 0
 
     def write_back(self, scene: Scene) -> None:
         """Write into the scene what stepping has changed."""

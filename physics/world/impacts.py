@@ -6,7 +6,7 @@ from ..kernels import kernel
 from ..pairs.response import bounce_velocities
 from .clock_time import is_earlier
 from .events import contact_point, enter_sensor, has_room, leave_sensors, write_event
-from .lookup.boxes import first_margin, fit_here
+from .lookup.boxes import fit_here, margin_after_hit, next_margin
 from .lookup.overrides import find_override
 from .prediction import find_stale, is_capped, is_inside, motion_at, predict
 from .records import HIT, MEET, Hits
@@ -54,10 +54,7 @@ def _leave_box(world: WorldView, slot: int) -> None:
     """Let a body leave its box and get another one, as it planned."""
     plan = plans_of(world)[slot]
     now, now_low = plan.time, plan.time_low
-    margin = first_margin(world, slot)
-    if plan.fitted >= clock_of(world).time:
-        # Twice in a step.
-        margin = max(margin, 2.0 * plan.margin)
+    margin = next_margin(world, slot)
     fit_here(world, slot, now, now_low, margin)
     predict(world, slot, now, now_low, False)
 
@@ -169,9 +166,9 @@ def _plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float
         slot = traits[body].slot
         if traits[body].inverse_mass > 0.0:
             count = find_stale(world, slot, count)
-            margin = first_margin(world, slot)
-            if plans[slot].margin > 2.0 * margin:
-                fit_here(world, slot, now, now_low, max(margin, 0.5 * plans[slot].margin))
+            margin = margin_after_hit(world, slot)
+            if margin < plans[slot].margin:
+                fit_here(world, slot, now, now_low, margin)
     for body in (a, b):
         if traits[body].slot >= 0:
             predict(world, traits[body].slot, now, now_low, False)

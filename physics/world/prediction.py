@@ -221,7 +221,8 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     body = moving_of(world)[slot]
     own = traits[body]
     best, best_low = _plan_to_leave(world, slot, now, now_low)
-    for index in range(find_near(world, slot, only_later)):
+    plan.near = find_near(world, slot, only_later)
+    for index in range(plan.near):
         other = near[index]
         trait = traits[other]
         since, since_low = plan.at, plan.at_low

@@ -132,6 +132,7 @@ Plan = record_dtype(
         ("middle_y", np.float64),
         ("margin", np.float64),
         ("fitted", np.float64),
+        ("near", np.int64),  # bodies that it may meet there
         ("is_linked", np.int64),
         ("level", np.int64),  # of the grid
         ("column", np.int64),

@@ -5,7 +5,7 @@ import math
 from ..kernels import kernel
 from ..kernels.borrowed import borrowed
 from .clock_time import later
-from .events import forget_moved, leave_all_sensors
+from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import move_to, run_events
 from .lookup.boxes import first_margin, fit_all, fit_here
 from .lookup.tree import NO_ONE
@@ -64,7 +64,11 @@ def step_worlds(
         progress.world = world_index
         progress.full = 0
         while progress.step < steps:
-            if progress.running == 0 and not begin_step(world, dt):
+            if progress.running == 0:
+                if not has_room(world, hits, count):
+                    return -1 - count
+                count = begin_step(world, hits, count, world_index, dt)
+            if count == INVALID:
                 progress.step = 0
                 progress.world = 0
                 return INVALID
@@ -88,25 +92,26 @@ def step_worlds(
 
 
 @kernel
-def begin_step(world: WorldView, dt: float) -> bool:
-    """Prepare the plans of a step; return False, and do nothing, if a number is not finite.
+def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: float) -> int:
+    """Prepare the plans of a step; return how many hits there are.
 
-    Plans from the last step still hold, but for the bodies that somebody has moved since.
+    It returns `INVALID`, and does nothing, if a number is not finite. Plans from the last step
+    still hold, but for the bodies that somebody has moved since.
     """
     clock = clock_of(world)
     progress = progress_of(world)
     progress.end, progress.end_low = later(clock.time, clock.time_low, dt)
     if not abs(progress.end) < math.inf:
-        return False
+        return INVALID
     progress.crowded = 0
     is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
     if is_calm and clock.planned:
-        return True
+        return count
     if not _are_finite(shown_of(world)):
-        return False
-    if header_of(world).sensors > 0:
-        forget_moved(world)
+        return INVALID
     _adopt_shown(world)
+    if header_of(world).sensors > 0:
+        count = leave_placed(world, hits, count, world_index)
     if header_of(world).continuous:
         _plan(world, clock.planned == 0)
         if progress.touching and relax_overlaps(world):
@@ -118,7 +123,7 @@ def begin_step(world: WorldView, dt: float) -> bool:
         progress.next_near = 0
         _move_all(world)
         fit_all(world, progress.end, progress.end_low)
-    return True
+    return count
 
 
 @kernel

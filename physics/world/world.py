@@ -124,8 +124,8 @@ class World:
     def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
         """Put a body somewhere, give it another velocity, or both.
 
-        Overlaps that this makes are relaxed in the next step. A body with a new position is inside
-        no sensor until a step finds it there.
+        The next step relaxes the overlaps that this makes. It begins with an `END` for each sensor
+        that the body is no longer inside, and a `BEGIN` for each that it is now inside.
         """
         body = self._index(index)
         changes = [] if position is None else [(slice(0, 2), vector("position", position))]
@@ -139,8 +139,6 @@ class World:
             scene = self._edit()
             for columns, value in changes:
                 scene.motions[body][columns] = value
-        if position is not None:
-            (self._built or self._scene).forget_inside(body)
 
     @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:

@@ -2,8 +2,9 @@
 
 A moving body's box in the grid is larger than the body by a *margin* on all sides. While it stays
 inside, the grid need not change; that it leaves its box is an event like any other. So bodies are
-followed wherever they go. The margin suits the body's size; it doubles for one that leaves its box
-twice within a step, and becomes smaller again with the hits. It has no influence on any result.
+followed wherever they go. The margin suits the body's size, and becomes smaller in a crowd. It
+grows each time that a body leaves its box again within a step, so that no speed takes many boxes.
+It has no influence on any result.
 """
 
 import math
@@ -31,6 +32,11 @@ from .tree import NO_ONE, clear_tree, insert_leaf
 # The margin, in units of the body's size and of the median of all sizes.
 OWN_SHARE = 1.497
 TYPICAL_SHARE = 1.763
+# A body that may meet more than so many others gets a smaller margin, down to this share of the
+# first one; with fewer, a larger one again.
+CROWDED = 12
+LONELY = 6
+LEAST_SHARE = 0.1
 # It is at least this fraction of the coordinates: far from the origin, smaller steps are rounding.
 # A box is larger than the body and the margin by this fraction of all that made it.
 FAR = 1e-9
@@ -51,6 +57,32 @@ def first_margin(world: WorldView, slot: int) -> float:
     shape = shapes_of(world)[trait.collider]
     reach = max(max(-shape.lower_x, shape.upper_x), max(-shape.lower_y, shape.upper_y))
     return float(max(OWN_SHARE * reach, TYPICAL_SHARE * header_of(world).typical))
+
+
+@kernel
+def next_margin(world: WorldView, slot: int) -> float:
+    """Return the margin of the next box of a body that leaves one."""
+    plan = plans_of(world)[slot]
+    is_crowded = plan.near > CROWDED
+    margin: float = plan.margin
+    if plan.fitted >= clock_of(world).time:  # the second one in this step
+        return margin * (1.1 if is_crowded else 2.0)
+    first = first_margin(world, slot)
+    if is_crowded:
+        margin *= 0.75
+    elif plan.near < LONELY:
+        margin *= 1.25
+    return max(LEAST_SHARE * first, min(first, margin))
+
+
+@kernel
+def margin_after_hit(world: WorldView, slot: int) -> float:
+    """Return the margin that a body should have after a hit: a smaller one, or what it has."""
+    plan = plans_of(world)[slot]
+    margin: float = plan.margin
+    if plan.near > CROWDED:
+        return max(min(margin, LEAST_SHARE * first_margin(world, slot)), 0.6 * margin)
+    return margin
 
 
 @kernel

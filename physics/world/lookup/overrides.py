@@ -11,14 +11,24 @@ from ...kernels import kernel
 from ..records import Override, Overrides
 
 EMPTY = -1
+_BITS = (1 << 30) - 1
+
+
+@kernel
+def _first_place(low: int, high: int, length: int) -> int:
+    """Return where the search for a pair begins in a table, whose length is a power of two."""
+    # Only some bits of the numbers: so nothing overflows.
+    mixed = (low & _BITS) * 73856093 + (high & _BITS) * 83492791
+    mixed ^= mixed >> 17
+    mixed = (mixed & _BITS) * 19349663
+    return (mixed ^ (mixed >> 13)) & (length - 1)
 
 
 @kernel
 def find_override(overrides: Overrides, low: int, high: int) -> float:
     """Return the restitution of a pair of bodies, low < high; nan if it has none of its own."""
     length = overrides.shape[0]
-    # Without an overflow: an index is below 2 ** 31.
-    place = (low * 73856093 + high * 19349663) % max(length, 1)
+    place = _first_place(low, high, length)
     for _ in range(length):
         override = overrides[place]
         if override.a == EMPTY:
@@ -31,11 +41,11 @@ def find_override(overrides: Overrides, low: int, high: int) -> float:
 
 def override_table(pairs: Mapping[tuple[int, int], float]) -> npt.NDArray[Any]:
     """Return the table of some pairs (a, b), a < b."""
-    length = 2 * len(pairs) + 1 if pairs else 0
+    length = 1 << (2 * len(pairs)).bit_length() if pairs else 0
     table = np.zeros(length, Override)
     table["a"] = EMPTY
     for (low, high), restitution in sorted(pairs.items()):
-        place = (low * 73856093 + high * 19349663) % length
+        place = _first_place(low, high, length)
         while table[place]["a"] != EMPTY:
             place = (place + 1) % length
         table[place] = (low, high, restitution)

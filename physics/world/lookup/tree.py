@@ -105,18 +105,14 @@ def find_leaves(
 
 @kernel
 def _best_sibling(tree: TreeRecord, nodes: Nodes, leaf: int) -> int:
-    """Return the node beside which a new leaf enlarges the boxes least."""
+    """Return the leaf beside which a new one enlarges the boxes least, as far as one can see.
+
+    Not an inner node: its new parent could be out of balance by more than one rotation.
+    """
     index = tree.root
     while nodes[index].left != NO_ONE:
         left, right = nodes[index].left, nodes[index].right
-        together = _joint_size(nodes, index, leaf)
-        # What all nodes below will cost, because this one becomes larger.
-        inherited = 2.0 * (together - _size(nodes, index))
-        cost_left = _cost(nodes, left, leaf) + inherited
-        cost_right = _cost(nodes, right, leaf) + inherited
-        if 2.0 * together < cost_left and 2.0 * together < cost_right:
-            break
-        index = left if cost_left < cost_right else right
+        index = left if _cost(nodes, left, leaf) < _cost(nodes, right, leaf) else right
     return int(index)
 
 
