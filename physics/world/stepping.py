@@ -2,8 +2,12 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from ..kernels import kernel
-from ..kernels.borrowed import borrowed
+from ..kernels.borrowed import BYTE
+from ..kernels.portable.addresses import array_at
 from .clock_time import later
 from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import move_to, run_events
@@ -11,7 +15,7 @@ from .lookup.boxes import first_margin, fit_all, fit_here
 from .lookup.tree import NO_ONE
 from .overlaps import relax_overlaps, resolve_overlaps
 from .prediction import find_stale, motion_at, predict
-from .records import NOTHING, Block, Blocks, Hit, Hits, Motions
+from .records import NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
 from .tournament import start_tournament
 from .view import (
     WorldView,
@@ -31,31 +35,45 @@ from .view import (
 # What `step_worlds` returns if a number is not finite.
 INVALID = -(1 << 62)
 
-HIT_SIZE = Hit.itemsize
+
+def call_of(states: Blocks, insides: Blocks, workspace: Block, hits: Hits) -> npt.NDArray[np.int64]:
+    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [9].
+
+    The arrays must live as long as it is used.
+
+    Args:
+        states, insides: uint8 [worlds, bytes], contiguous; workspace: uint8 [bytes]; see `records`.
+        hits: the buffer, `Hit` [room].
+    """
+    return np.array(
+        [
+            *(states.ctypes.data, *states.shape),
+            *(insides.ctypes.data, insides.shape[1]),
+            *(workspace.ctypes.data, len(workspace)),
+            *(hits.ctypes.data, len(hits)),
+        ],
+        np.int64,
+    )
 
 
 @kernel
-def step_worlds(
-    states: Blocks,
-    insides: Blocks,
-    workspace: Block,
-    buffer: Block,
-    count: int,
-    dt: float,
-    steps: int,
-) -> int:
+def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
     """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
 
-    If the buffer or a block of ``insides`` is full, it stops early and returns -1 - count. Call it
-    again with larger ones that hold the same, and it continues. It returns `INVALID` if a position
-    or velocity of a world is not finite, or has become so, or its time.
+    If the buffer or a block of what is inside is full, it stops early and returns -1 - count. Call
+    it again with larger ones that hold the same, and it continues. It returns `INVALID` if a
+    position or velocity of a world is not finite, or has become so, or its time.
 
     Args:
-        states, insides: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
-        buffer: uint8 [bytes], room for `Hit` records, of which ``count`` are there already.
-        count, dt, steps: see above.
+        call: where the worlds are, see `call_of`. Each array that Python passes to a kernel takes a
+            tenth of a microsecond, and so this is only one.
+        count: of the `Hit` records that are in the buffer already.
+        dt, steps: see above.
     """
-    hits = borrowed(buffer, 0, buffer.shape[0] // HIT_SIZE, Hit)
+    states = array_at(call[0], (call[1], call[2]), BYTE)
+    insides = array_at(call[3], (call[1], call[4]), BYTE)
+    workspace = array_at(call[5], (call[6],), BYTE)
+    hits = array_at(call[7], (call[8],), Hit)
     for world_index in range(states.shape[0]):
         world = open_world(states[world_index], insides[world_index], workspace)
         progress = progress_of(world)

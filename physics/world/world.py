@@ -1,6 +1,7 @@
 """`World`: many bodies, stepped from impact to impact, and what happened to them."""
 
 import copy
+import math
 import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -193,14 +194,16 @@ class World:
                 large for a number.
             RuntimeError: another call is in progress.
         """
-        length, count = checked_step(dt, steps)
+        # Most steps save this call, and the next but one.
+        if not (type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps == 1):
+            dt, steps = checked_step(dt, steps)
         guard = self._alone
         if guard.taken:
             guard.refuse()
         guard.taken = True
         try:
-            built = self._built or self.built()  # most steps save a call
-            hits = built.stepper.step(length, count)
+            built = self._built or self.built()
+            hits = built.stepper.step(dt, steps)
         finally:
             guard.taken = False
         if len(hits) and built.capped != built.warned:
