@@ -55,10 +55,9 @@ class Stepper:
     def __init__(self, setup: Setup, states: ByteArray, insides: ByteArray) -> None:
         self.workspace = setup.workspace.copy()
         self._states = states
-        self._insides = insides
         self._has_sensors = len(setup.sensing) > 0
-        self._hits: npt.NDArray[Any] = np.zeros(0, Hit)
-        self._grow(FIRST_ROOM)
+        self._hits: npt.NDArray[Any]
+        self._use(insides, np.zeros(FIRST_ROOM, Hit))
 
     @property
     def insides(self) -> ByteArray:
@@ -67,8 +66,7 @@ class Stepper:
 
     @insides.setter
     def insides(self, blocks: ByteArray) -> None:
-        self._insides = np.ascontiguousarray(blocks)
-        self._grow(len(self._hits))
+        self._use(blocks, self._hits)
 
     def step(self, dt: float, steps: int) -> npt.NDArray[Any]:
         """Step all worlds; return their hits, sorted by world and time.
@@ -95,17 +93,20 @@ class Stepper:
 
     def _make_room(self) -> None:
         """Make room for more hits, and for more that is inside sensors."""
+        hits = np.zeros(2 * len(self._hits), Hit)
+        hits[: len(self._hits)] = self._hits
+        insides = self._insides
         if self._has_sensors:
             header = self.workspace[: Header.itemsize].view(Header)[0]
-            self._insides = inside_blocks(pairs_inside(self._insides), int(header.bodies), True)
-        self._grow(2 * len(self._hits))
+            insides = inside_blocks(pairs_inside(insides), int(header.bodies), True)
+        self._use(insides, hits)
 
-    def _grow(self, room: int) -> None:
-        """Make room for so many hits."""
-        hits = np.zeros(room, Hit)
-        hits[: len(self._hits)] = self._hits
-        self._hits = hits
-        self._call = call_of(self._states, self._insides, self.workspace, hits)
+    def _use(self, insides: ByteArray, hits: npt.NDArray[Any]) -> None:
+        """Step with other arrays from now on."""
+        insides = np.ascontiguousarray(insides)
+        call = call_of(self._states, insides, self.workspace, hits)
+        # Together, so that Ctrl-C cannot leave addresses of arrays that are no longer there.
+        self._insides, self._hits, self._call = insides, hits, call
 
 
 def checked_step(dt: Any, steps: Any) -> tuple[float, int]:
