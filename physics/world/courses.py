@@ -4,6 +4,7 @@ from ..kernels import kernel
 from ..pairs.touching import touch_margins
 from ..tolerances import SLIDE, TOUCH
 from .clock_time import elapsed
+from .records import MotionRecord, PlanRecord
 from .view import WorldView, edges_of, motions_of, plans_of, shapes_of, traits_of
 
 
@@ -16,9 +17,17 @@ def motion_at(
     if trait.slot < 0:
         return trait.home_x, trait.home_y, 0.0, 0.0
     motion = motions_of(world)[trait.slot]
-    plan = plans_of(world)[trait.slot]
+    x, y = place_at(motion, plans_of(world)[trait.slot], now, now_low)
+    return x, y, motion.vx, motion.vy
+
+
+@kernel
+def place_at(
+    motion: MotionRecord, plan: PlanRecord, now: float, now_low: float
+) -> tuple[float, float]:
+    """Return the position (x, y) of a moving body at a time."""
     since = elapsed(now, now_low, plan.at, plan.at_low)
-    return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
+    return motion.x + motion.vx * since, motion.y + motion.vy * since
 
 
 @kernel

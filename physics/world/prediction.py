@@ -10,18 +10,20 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
 from ..pairs.touching import margin_along
 from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
-from .clock_time import later
-from .courses import margins_of, motion_at, short_way
-from .grid import find_near, time_to_cross
+from .clock_time import elapsed, is_earlier, later
+from .courses import margins_of, motion_at, place_at, short_way
+from .lookup.boxes import time_to_leave
+from .lookup.inside import find_inside
+from .lookup.neighbours import find_near
+from .lookup.tree import NO_ONE
 from .meetings.passing import passes_by
 from .meetings.ties import is_straighter
-from .records import CROSS_X, CROSS_Y, LOOK, MEET, NOTHING, PlanRecord, TraitRecord
+from .records import LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
     edges_of,
-    header_of,
-    inside_of,
+    motions_of,
     moving_of,
     near_of,
     plans_of,
@@ -36,11 +38,10 @@ from .view import (
 @kernel
 def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
     """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
-    bodies = traits_of(world).shape[0]
     if one.sensor >= 0:
-        return bool(inside_of(world)[one.sensor * bodies + b])
+        return find_inside(world, a, b) != NO_ONE
     if other.sensor >= 0:
-        return bool(inside_of(world)[other.sensor * bodies + a])
+        return find_inside(world, b, a) != NO_ONE
     return False
 
 
@@ -55,72 +56,151 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
             consider this one).
     """
     plan = plans_of(world)[slot]
-    plan.kind = NOTHING
+    _forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
     plan.slack = 0.0
     plan.tied = 0
     _find_event(world, slot, now, now_low, only_later)
+    if plan.kind == MEET:
+        _join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
+def _join_suitors(world: WorldView, slot: int) -> None:
+    """Put a body into the list of those that plan to meet its partner, if the partner moves."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    theirs = traits_of(world)[plan.partner].slot
+    if theirs < 0:
+        return
+    partner = plans[theirs]
+    plan.previous_suitor = NO_ONE
+    plan.next_suitor = partner.suitor
+    if partner.suitor != NO_ONE:
+        plans[partner.suitor].previous_suitor = slot
+    partner.suitor = slot
+
+
+@kernel
+def _forget_partner(world: WorldView, slot: int) -> None:
+    """Let a body plan nothing, and take it out of the list in which it is."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    if plan.kind == MEET:
+        theirs = traits_of(world)[plan.partner].slot
+        if theirs >= 0:
+            if plan.next_suitor != NO_ONE:
+                plans[plan.next_suitor].previous_suitor = plan.previous_suitor
+            if plan.previous_suitor != NO_ONE:
+                plans[plan.previous_suitor].next_suitor = plan.next_suitor
+            else:
+                plans[theirs].suitor = plan.next_suitor
+    plan.kind = NOTHING
+
+
+@kernel
+def _meeting(
+    world: WorldView,
+    slot: int,
+    other: int,
+    since: float,
+    since_low: float,
+    best: float,
+    best_low: float,
+) -> tuple[float, float, float, float]:
+    """Return (duration, normal_x, normal_y, slack) of when two bodies meet, seen from a time.
+
+    The duration is inf if they don't meet before the time ``best``, or so soon after it that
+    rounding decides. Bodies that touch or overlap meet only if they have to bounce. For so much as
+    the slack before they meet, they touch already.
+    """
+    shapes, plans, motions = shapes_of(world), plans_of(world), motions_of(world)
+    body = moving_of(world)[slot]
+    own, trait = traits_of(world)[body], traits_of(world)[other]
+    motion, plan = motions[slot], plans[slot]
+    x, y = place_at(motion, plan, since, since_low)
+    their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
+    late = plan.slack
+    if trait.slot >= 0:
+        theirs = motions[trait.slot]
+        their_x, their_y = place_at(theirs, plans[trait.slot], since, since_low)
+        ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
+    dx, dy = their_x - x, their_y - y
+    if trait.slot < 0 and ux * ux + uy * uy > 0.0:
+        coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
+        late = max(late, TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy)))
+    left = elapsed(best, best_low, since, since_low) + late
+    if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, left):
+        return math.inf, 0.0, 0.0, 0.0
+    margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
+    time, normal_x, normal_y = impact_between(
+        shapes,
+        edges_of(world),
+        own.collider,
+        trait.collider,
+        dx,
+        dy,
+        ux,
+        uy,
+        left,
+        margin_x,
+        margin_y,
+    )
+    if time == math.inf:
+        return math.inf, 0.0, 0.0, 0.0
+    closing = -(ux * normal_x + uy * normal_y)
+    margin = margin_along(normal_x, normal_y, margin_x, margin_y)
+    if own.sensor < 0 and trait.sensor < 0:
+        if time == 0.0:
+            progress_of(world).touching = 1
+        if time * closing <= margin and passes_by(world, body, other, closing):
+            return math.inf, 0.0, 0.0, 0.0
+    return time, normal_x, normal_y, margin / closing if closing > 0.0 else 0.0
+
+
+@kernel
 def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
-    """Set a body's plan to its first event, if there is one."""
-    shapes = shapes_of(world)
-    edges = edges_of(world)
-    traits = traits_of(world)
-    near = near_of(world)
-    plan = plans_of(world)[slot]
+    """Set a body's plan to its first event, if there is one.
+
+    A pair's time of impact is computed from when both bodies began their courses, whenever that is.
+    So nothing but the two courses has an influence on it: no bit depends on the broad phase, or on
+    the length of steps.
+    """
+    traits, plans, near = traits_of(world), plans_of(world), near_of(world)
+    plan = plans[slot]
     body = moving_of(world)[slot]
     own = traits[body]
-    x, y, vx, vy = motion_at(world, body, now, now_low)
-    best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
-    if plan.rests >= MOST_RESTS:
-        best = _look_again(world, plan, body, abs(vx) + abs(vy), best)
-    for index in range(find_near(world, slot, only_later)):
+    best, best_low = _plan_alone(world, slot, now, now_low)
+    plan.near = find_near(world, slot, only_later)
+    for index in range(plan.near):
         other = near[index]
         trait = traits[other]
-        their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
-        dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
-        latest = best + plan.slack
-        if trait.slot < 0 and ux * ux + uy * uy > 0.0:
-            coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-            flat = TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy))
-            latest = best + max(flat, plan.slack)
-        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, latest):
-            continue
-        if is_inside(world, own, body, trait, other):
-            continue
-        margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
-        time, normal_x, normal_y = impact_between(
-            shapes,
-            edges,
-            own.collider,
-            trait.collider,
-            dx,
-            dy,
-            ux,
-            uy,
-            latest,
-            margin_x,
-            margin_y,
+        since, since_low = plan.at, plan.at_low
+        if trait.slot >= 0:
+            theirs = plans[trait.slot]
+            if is_earlier(since, since_low, theirs.at, theirs.at_low):
+                since, since_low = theirs.at, theirs.at_low
+        time, normal_x, normal_y, slack = _meeting(
+            world, slot, other, since, since_low, best, best_low
         )
-        if time == math.inf:
+        if time == math.inf or is_inside(world, own, body, trait, other):
             continue
-        closing = -(ux * normal_x + uy * normal_y)
-        margin = margin_along(normal_x, normal_y, margin_x, margin_y)
-        if own.sensor < 0 and trait.sensor < 0:
-            if time == 0.0:
-                progress_of(world).touching = 1
-            if time * closing <= margin and passes_by(world, body, other, closing):
+        begin, begin_low = later(since, since_low, time)
+        if is_earlier(begin, begin_low, now, now_low):
+            # That meeting is over: the body has left the sensor, for instance.
+            time, normal_x, normal_y, slack = _meeting(
+                world, slot, other, now, now_low, best, best_low
+            )
+            if time == math.inf:
                 continue
-        slack = margin / closing if closing > 0.0 else 0.0
+            begin, begin_low = later(now, now_low, time)
+        wait = elapsed(begin, begin_low, best, best_low)
         # At the same time as the best so far: then the later one is touched already.
-        is_tied = plan.kind == MEET and -plan.slack <= time - best <= slack
-        both_rest = trait.slot < 0 and traits[plan.partner].slot < 0
-        if is_tied and (time == best or both_rest):
-            when, when_low = later(now, now_low, best)
+        is_tied = plan.kind == MEET and -plan.slack <= wait <= slack
+        are_static = trait.slot < 0 and traits[plan.partner].slot < 0
+        if is_tied and (wait == 0.0 or are_static):
             is_first = is_straighter(
                 world,
                 body,
@@ -130,68 +210,56 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
                 plan.partner,
                 plan.normal_x,
                 plan.normal_y,
-                when,
-                when_low,
+                best,
+                best_low,
             )
         else:
-            # At the same time, a meeting comes before a crossing.
-            is_first = time < best or (time == best and plan.kind != MEET)
+            # At the same time, a meeting comes before what a body does alone.
+            is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)
         if is_tied:
             plan.tied = 1
         elif is_first:
             plan.tied = 0
         if is_first:
-            best = time
+            best, best_low = begin, begin_low
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
             plan.normal_y = normal_y
             plan.slack = slack
     if plan.kind != NOTHING:
-        plan.time, plan.time_low = later(now, now_low, best)
+        plan.time, plan.time_low = best, best_low
 
 
 @kernel
-def _find_crossing(
-    world: WorldView, plan: PlanRecord, x: float, y: float, vx: float, vy: float
-) -> float:
-    """Plan to leave the cell, if the body does; return in how long."""
-    header = header_of(world)
-    time_x = time_to_cross(x, vx, header.left, header.cell, plan.column, header.columns)
-    time_y = time_to_cross(y, vy, header.bottom, header.cell, plan.row, header.rows)
-    time = min(time_x, time_y)
-    if time < math.inf:
-        plan.kind = CROSS_X if time_x <= time_y else CROSS_Y
-    return time
+def _plan_alone(world: WorldView, slot: int, now: float, now_low: float) -> tuple[float, float]:
+    """Plan what a body does alone: to leave its box, or to look again what it slides into.
 
-
-@kernel
-def _look_again(world: WorldView, plan: PlanRecord, body: int, speed: float, best: float) -> float:
-    """Plan to look again what a body slides into, if that is its first event; return in how long.
-
-    Args:
-        world, plan, body: the body.
-        speed: its speed, |vx| + |vy|.
-        best: in how long its first event is so far.
+    It returns when, as a time in two numbers.
     """
-    way = short_way(world, body)
-    if speed > 0.0 and way < best * speed:
-        plan.kind = LOOK
-        return way / speed
-    return best
+    plan = plans_of(world)[slot]
+    body = moving_of(world)[slot]
+    x, y, vx, vy = motion_at(world, body, now, now_low)
+    duration = time_to_leave(plan, x, y, vx, vy)
+    if duration < math.inf:
+        plan.kind = LEAVE
+    if plan.rests >= MOST_RESTS:
+        way, speed = short_way(world, body), abs(vx) + abs(vy)
+        if speed > 0.0 and way < duration * speed:
+            plan.kind = LOOK
+            duration = way / speed
+    if plan.kind == NOTHING:
+        return math.inf, 0.0
+    return later(now, now_low, duration)
 
 
 @kernel
 def find_stale(world: WorldView, slot: int, count: int) -> int:
-    """Append the bodies to ``stale`` that planned to meet one whose course has changed."""
-    body = moving_of(world)[slot]
-    for index in range(find_near(world, slot, False)):
-        other = traits_of(world)[near_of(world)[index]].slot
-        if other < 0:
-            continue
-        plan = plans_of(world)[other]
-        if plan.kind == MEET and plan.partner == body:
-            plan.kind = NOTHING
-            stale_of(world)[count] = other
-            count += 1
+    """Append the bodies to ``stale`` that plan to meet one whose course has changed."""
+    plans, stale = plans_of(world), stale_of(world)
+    suitor = plans[slot].suitor
+    while suitor != NO_ONE:
+        stale[count] = suitor
+        count += 1
+        suitor = plans[suitor].next_suitor
     return count

@@ -7,7 +7,7 @@ from ..pairs.table import impact_between, may_touch, overlap_between
 from ..pairs.touching import touch_margins
 from ..shapes.records import Edges, Shapes
 from .records import Block, Indices, TraitRecord
-from .view import WorldView, motions_of, open_world, traits_of
+from .view import WorldView, open_world, shown_of, traits_of
 
 
 @kernel
@@ -15,7 +15,7 @@ def _position(world: WorldView, trait: TraitRecord) -> tuple[float, float]:
     """Return the position of a body between two steps."""
     if trait.slot < 0:
         return trait.home_x, trait.home_y
-    motion = motions_of(world)[trait.slot]
+    motion = shown_of(world)[trait.slot]
     return motion.x, motion.y
 
 
@@ -39,7 +39,7 @@ def find_overlapping(
         mask: the categories that count.
         found: int64 [bodies].
     """
-    world = open_world(state, workspace)
+    world = open_world(state, state, workspace)
     own = shapes.shape[0] - 1
     count = 0
     for body in range(traits_of(world).shape[0]):
@@ -76,7 +76,7 @@ def find_first(
     The shape moves from (x, y), fraction 0, by (way_x, way_y), fraction 1. The normal points to
     the body, which is -1 if it meets none. Arguments are as for `find_overlapping`.
     """
-    world = open_world(state, workspace)
+    world = open_world(state, state, workspace)
     own = shapes.shape[0] - 1
     first, best, normal_x, normal_y = -1, math.inf, 0.0, 0.0
     for body in range(traits_of(world).shape[0]):

@@ -1,6 +1,7 @@
 """`World`: many bodies, stepped from impact to impact, and what happened to them."""
 
 import copy
+import math
 import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -124,8 +125,8 @@ class World:
     def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
         """Put a body somewhere, give it another velocity, or both.
 
-        Overlaps that this makes are relaxed in the next step. A body with a new position is inside
-        no sensor until a step finds it there.
+        The next step relaxes the overlaps that this makes. It begins with an `END` for each sensor
+        that the body is no longer inside, and a `BEGIN` for each that it is now inside.
         """
         body = self._index(index)
         changes = [] if position is None else [(slice(0, 2), vector("position", position))]
@@ -139,8 +140,6 @@ class World:
             scene = self._edit()
             for columns, value in changes:
                 scene.motions[body][columns] = value
-        if position is not None:
-            (self._built or self._scene).forget_inside(body)
 
     @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:
@@ -195,14 +194,16 @@ class World:
                 large for a number.
             RuntimeError: another call is in progress.
         """
-        length, count = checked_step(dt, steps)
+        # Most steps save this call, and the next but one.
+        if not (type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps == 1):
+            dt, steps = checked_step(dt, steps)
         guard = self._alone
         if guard.taken:
             guard.refuse()
         guard.taken = True
         try:
-            built = self._built or self.built()  # most steps save a call
-            hits = built.stepper.step(length, count)
+            built = self._built or self.built()
+            hits = built.stepper.step(dt, steps)
         finally:
             guard.taken = False
         if len(hits) and built.capped != built.warned:
@@ -264,7 +265,7 @@ class World:
     def snapshot(self) -> bytes:
         """Return all that changes as the world is stepped, as bytes for `restore`."""
         built = self.built()
-        return pack_states(built.states, built.setup)
+        return pack_states(built.states, [built.stepper.insides], built.setup)
 
     @alone
     def restore(self, snapshot: bytes) -> None:
@@ -274,14 +275,19 @@ class World:
             ValueError: if it is corrupt, or of another world. This world does not change then.
         """
         built = self.built()
-        unpack_states(snapshot, built.states, built.setup)
+        built.stepper.insides = unpack_states(snapshot, built.states, built.setup)
         built.warned = built.capped
 
     @alone
-    def copies(self, count: int) -> tuple[Setup, ByteArray]:
-        """Return what does not change as the world is stepped, and copies of what does."""
+    def copies(self, count: int) -> tuple[Setup, ByteArray, ByteArray]:
+        """Return what does not change as the world is stepped, and copies of what does.
+
+        Returns:
+            (setup, states, insides), both uint8 [count, bytes].
+        """
         built = self.built()
-        return built.setup, np.repeat(built.states, count, axis=0)
+        insides = np.repeat(built.stepper.insides, count, axis=0)
+        return built.setup, np.repeat(built.states, count, axis=0), insides
 
     def built(self) -> Built:
         """Return the form of the world that kernels step; it is built if need be."""

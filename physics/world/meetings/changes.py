@@ -2,8 +2,9 @@
 
 from ...kernels import kernel
 from ...tolerances import MOST_AT_ONCE, MOST_RESTS
+from ..lookup.boxes import fit_here, margin_after_hit
 from ..prediction import find_stale, predict
-from ..records import FREE, HELD, INERT, NOTHING
+from ..records import FREE, HELD, INERT
 from ..view import (
     WorldView,
     clock_of,
@@ -55,19 +56,24 @@ def reach_stage(world: WorldView, slot: int, stage: int) -> None:
 def plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
     """Make new plans for two bodies that have bounced, and for all that planned to meet them."""
     traits = traits_of(world)
-    plans = plans_of(world)
-    for body in (a, b):
-        if traits[body].slot >= 0:
-            plans[traits[body].slot].kind = NOTHING
     count = 0
     for body in (a, b):
         # A body of infinite mass keeps its course: plans to meet it still hold.
         if traits[body].inverse_mass > 0.0:
             count = find_stale(world, traits[body].slot, count)
+            shrink_box(world, traits[body].slot, now, now_low)
     for body in (a, b):
         if traits[body].slot >= 0:
             predict(world, traits[body].slot, now, now_low, False)
     predict_stale(world, count, now, now_low)
+
+
+@kernel
+def shrink_box(world: WorldView, slot: int, now: float, now_low: float) -> None:
+    """Let a body that was hit have a smaller box, if it is in a crowd."""
+    margin = margin_after_hit(world, slot)
+    if margin < plans_of(world)[slot].margin:
+        fit_here(world, slot, now, now_low, margin)
 
 
 @kernel

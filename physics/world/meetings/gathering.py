@@ -3,7 +3,7 @@
 from ...kernels import kernel
 from ..clock_time import elapsed, later
 from ..courses import margins_of, motion_at
-from ..grid import find_near
+from ..lookup.neighbours import find_near, sort_items
 from ..records import MEET
 from ..tournament import is_far_ahead, next_due
 from ..view import (
@@ -14,6 +14,7 @@ from ..view import (
     near_of,
     plans_of,
     progress_of,
+    stale_of,
     traits_of,
     winners_of,
 )
@@ -47,10 +48,15 @@ def _is_solid_meeting(world: WorldView, slot: int) -> bool:
 
 @kernel
 def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
-    """Begin a group with a meeting that happens now, and all others at the same time."""
+    """Begin a group with a meeting that happens now, and all others at the same time.
+
+    They join in the order of their bodies. So no bit depends on which of the two planned to meet.
+    """
     clear_group(world)
-    plans, winners = plans_of(world), winners_of(world)
-    _join_planned(world, slot, now, now_low)
+    plans, winners, pairs = plans_of(world), winners_of(world), stale_of(world)
+    bodies = traits_of(world).shape[0]
+    pairs[0] = _pair_of(world, slot)
+    count = 1
     latest, latest_low = later(now, now_low, plans[slot].slack)
     node = next_due(winners, plans, 0, latest, latest_low)
     while node > 0:
@@ -59,19 +65,36 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
         # The times may differ by what rounding may do to either.
         wait = elapsed(plan.time, plan.time_low, now, now_low)
         if other != slot and wait <= plan.slack and _is_solid_meeting(world, other):
-            _join_planned(world, other, now, now_low)
+            pairs[count] = _pair_of(world, other)
+            count += 1
         node = next_due(winners, plans, node, latest, latest_low)
+    sort_items(pairs, count)
+    for index in range(count):
+        if index == 0 or pairs[index] != pairs[index - 1]:
+            _join_planned(world, pairs[index] // bodies, pairs[index] % bodies, now, now_low)
 
 
 @kernel
-def _join_planned(world: WorldView, slot: int, now: float, now_low: float) -> None:
-    """Join a body with the partner that it planned to meet."""
-    plan = plans_of(world)[slot]
-    a, b = moving_of(world)[slot], plan.partner
-    normal_x, normal_y = plan.normal_x, plan.normal_y
-    # It needs a new plan, also if this turns out to be no hit.
-    add_member(world, slot)
-    if traits_of(world)[a].inverse_mass == 0.0:
+def _pair_of(world: WorldView, slot: int) -> int:
+    """Return the pair of a body and its partner as one number, the same for both."""
+    one, other = moving_of(world)[slot], plans_of(world)[slot].partner
+    return int(min(one, other) * traits_of(world).shape[0] + max(one, other))
+
+
+@kernel
+def _join_planned(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
+    """Join two bodies of which one, or both, planned to meet the other."""
+    plans, traits = plans_of(world), traits_of(world)
+    for body in (a, b):
+        # It needs a new plan, also if this turns out to be no hit.
+        if traits[body].slot >= 0:
+            add_member(world, traits[body].slot)
+    slot = traits[a].slot
+    if slot >= 0 and plans[slot].kind == MEET and plans[slot].partner == b:
+        normal_x, normal_y = plans[slot].normal_x, plans[slot].normal_y
+    else:
+        normal_x, normal_y = -plans[traits[b].slot].normal_x, -plans[traits[b].slot].normal_y
+    if traits[a].inverse_mass == 0.0:
         a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     if not are_joined(world, a, b):
         join(world, a, b, normal_x, normal_y, now, now_low)
@@ -108,7 +131,9 @@ def _join_around(world: WorldView, body: int, now: float, now_low: float) -> Non
         return
     x, y, _, _ = motion_at(world, body, now, now_low)
     old_vx, old_vy, vx, vy = velocities_of(world, body)
-    for index in range(find_near(world, own.slot, False)):
+    count = find_near(world, own.slot, False)
+    sort_items(near, count)
+    for index in range(count):
         other = near[index]
         if traits[other].sensor >= 0:
             continue
