@@ -173,8 +173,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     body = moving_of(world)[slot]
     own = traits[body]
     best, best_low = _plan_alone(world, slot, now, now_low)
-    plan.near = find_near(world, slot, only_later)
-    for index in range(plan.near):
+    for index in range(find_near(world, slot, only_later)):
         other = near[index]
         trait = traits[other]
         since, since_low = plan.at, plan.at_low

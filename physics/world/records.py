@@ -102,6 +102,7 @@ Header = record_dtype(
         ("overrides", np.int64),
         ("progress_at", np.int64),
         ("near_at", np.int64),
+        ("found_at", np.int64),
         ("stale_at", np.int64),
         ("stack_at", np.int64),
         ("places_at", np.int64),
@@ -116,6 +117,7 @@ Header = record_dtype(
         ("winners_at", np.int64),
         ("leaves", np.int64),
         ("boxes_at", np.int64),
+        ("links_at", np.int64),
         ("grid_at", np.int64),
         ("level_counts_at", np.int64),
         ("heads_at", np.int64),
@@ -151,7 +153,8 @@ Plan = record_dtype(
         ("middle_y", np.float64),
         ("margin", np.float64),
         ("fitted", np.float64),
-        ("near", np.int64),  # bodies that it may meet there
+        ("near", np.int64),  # bodies that it may meet there; -1: too many for its list
+        ("fixed", np.int64),  # of these, how many are not found by the grid
         ("is_linked", np.int64),
         ("level", np.int64),  # of the grid
         ("column", np.int64),

@@ -20,7 +20,7 @@ from .lookup.overrides import override_table
 from .lookup.tree import NO_ONE
 from .records import Box, Grid, Header, Member, Motion, Node, Plan, Progress, Touch, Trait, Tree
 from .tournament import leaf_count
-from .view import CLOCK_SIZE, LEVELS, STACK
+from .view import CLOCK_SIZE, LEVELS, LINKS, STACK
 
 ByteArray = npt.NDArray[np.uint8]
 
@@ -155,6 +155,7 @@ def build_setup(
         overrides=override_table(overrides),
         progress=np.zeros(1, Progress),
         near=np.zeros(len(specs), np.int64),
+        found=np.zeros(len(specs), np.int64),
         stale=np.zeros(len(moving), np.int64),
         places=np.zeros(len(moving), np.int64),
         members=np.zeros(group, Member),
@@ -205,7 +206,8 @@ def _plan_state(header: npt.NDArray[Any]) -> None:
         "plans_at": Motion.itemsize * movers,
         "winners_at": Plan.itemsize * movers,
         "boxes_at": 8 * 2 * header["leaves"][0],
-        "grid_at": Box.itemsize * movers,
+        "links_at": Box.itemsize * movers,
+        "grid_at": 8 * LINKS * movers,
         "level_counts_at": Grid.itemsize,
         "heads_at": 8 * LEVELS,
         "state_size": 8 * header["heads"][0],

@@ -43,6 +43,7 @@ from .records import (
 CLOCK_SIZE = Clock.itemsize
 INSIDE_SIZE = Inside.itemsize
 LEVELS = 64  # of the grid of moving bodies
+LINKS = 32  # of a moving body: those that it may meet before it leaves its box
 STACK = 128  # of a search in a tree; a tree of that height would have more leaves than memory
 
 
@@ -108,6 +109,13 @@ def boxes_of(world: WorldView) -> Boxes:
     """Return the boxes of the moving bodies, `Box` [movers]."""
     header = header_of(world)
     return borrowed(world.state, header.boxes_at, header.movers, Box)
+
+
+@accessor
+def links_of(world: WorldView) -> Indices:
+    """Return the lists of bodies that moving ones may meet, int64 [LINKS * movers]."""
+    header = header_of(world)
+    return borrowed(world.state, header.links_at, LINKS * header.movers, INDEX)
 
 
 @accessor
@@ -226,6 +234,13 @@ def near_of(world: WorldView) -> Indices:
     """Return scratch memory for the bodies that one may meet, int64 [bodies]."""
     header = header_of(world)
     return borrowed(world.workspace, header.near_at, header.bodies, INDEX)
+
+
+@accessor
+def found_of(world: WorldView) -> Indices:
+    """Return scratch memory for the slots that a search in the grid finds, int64 [bodies]."""
+    header = header_of(world)
+    return borrowed(world.workspace, header.found_at, header.bodies, INDEX)
 
 
 @accessor

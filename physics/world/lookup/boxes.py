@@ -15,7 +15,6 @@ from ..clock_time import elapsed
 from ..records import Block, PlanRecord
 from ..view import (
     WorldView,
-    boxes_of,
     clock_of,
     header_of,
     motions_of,
@@ -27,7 +26,9 @@ from ..view import (
     static_tree_of,
     traits_of,
 )
-from .grid import clear_grid, enter_grid, leave_grid
+from .grid import clear_grid
+from .links import move_box
+from .neighbours import TOO_MANY
 from .tree import NO_ONE, clear_tree, insert_leaf
 
 # The margin, in units of the body's size and of the median of all sizes.
@@ -70,7 +71,7 @@ def first_margin(world: WorldView, slot: int) -> float:
 def next_margin(world: WorldView, slot: int) -> float:
     """Return the margin of the next box of a body that leaves one."""
     plan = plans_of(world)[slot]
-    is_crowded = plan.near > CROWDED
+    is_crowded = _is_crowded(plan)
     margin: float = plan.margin
     if plan.fitted >= clock_of(world).time:  # the second one in this step
         return margin * (1.1 if is_crowded else 2.0)
@@ -87,29 +88,35 @@ def margin_after_hit(world: WorldView, slot: int) -> float:
     """Return the margin that a body should have after a hit: a smaller one, or what it has."""
     plan = plans_of(world)[slot]
     margin: float = plan.margin
-    if plan.near > CROWDED:
+    if _is_crowded(plan):
         return max(min(margin, LEAST_SHARE * first_margin(world, slot)), 0.6 * margin)
     return margin
 
 
 @kernel
+def _is_crowded(plan: PlanRecord) -> bool:
+    """Return whether a body may meet many others before it leaves its box."""
+    return bool(plan.near > CROWDED or plan.near == TOO_MANY)
+
+
+@kernel
 def fit(world: WorldView, slot: int, x: float, y: float, margin: float) -> None:
     """Put a body's box about the place (x, y), where it is now."""
-    plan, box = plans_of(world)[slot], boxes_of(world)[slot]
+    plan = plans_of(world)[slot]
     shape = shapes_of(world)[traits_of(world)[moving_of(world)[slot]].collider]
     margin = max(margin, FAR * (abs(x) + abs(y)))
     plan.margin = margin
     plan.middle_x, plan.middle_y = x, y
     plan.fitted = clock_of(world).time
     room = margin + ROUNDING * (abs(x) + abs(y) + _reach(shape) + margin)
-    if plan.is_linked:
-        leave_grid(world, slot)
-    box.lower_x = (x + shape.lower_x) - room
-    box.lower_y = (y + shape.lower_y) - room
-    box.upper_x = (x + shape.upper_x) + room
-    box.upper_y = (y + shape.upper_y) + room
-    if plan.is_linked:
-        enter_grid(world, slot)
+    move_box(
+        world,
+        slot,
+        (x + shape.lower_x) - room,
+        (y + shape.lower_y) - room,
+        (x + shape.upper_x) + room,
+        (y + shape.upper_y) + room,
+    )
 
 
 @kernel
@@ -124,15 +131,13 @@ def fit_here(world: WorldView, slot: int, now: float, now_low: float, margin: fl
 def fit_all(world: WorldView, now: float, now_low: float) -> None:
     """Make the boxes and the grid of all moving bodies, where they are at a time."""
     header, plans = header_of(world), plans_of(world)
-    traits, moving = traits_of(world), moving_of(world)
     if header.has_grid:
         clear_grid(world)
     for slot in range(plans.shape[0]):
         plans[slot].is_linked = 0
+        plans[slot].near = TOO_MANY
+    for slot in range(plans.shape[0]):
         fit_here(world, slot, now, now_low, first_margin(world, slot))
-        if header.has_grid and not traits[moving[slot]].boundless:
-            plans[slot].is_linked = 1
-            enter_grid(world, slot)
 
 
 @kernel

@@ -139,7 +139,7 @@ def _find_on_level(world: WorldView, box: BoxRecord, level: int, found: Indices,
         for slot in range(plans.shape[0]):
             if plans[slot].is_linked and plans[slot].level == level:
                 found[count] = slot
-                count += _touch(box, boxes[slot])
+                count += touch(boxes[slot], box.lower_x, box.lower_y, box.upper_x, box.upper_y)
         return count
     left = _number(box.lower_x - 0.5 * size, size)
     right = _number(box.upper_x + 0.5 * size, size)
@@ -152,17 +152,17 @@ def _find_on_level(world: WorldView, box: BoxRecord, level: int, found: Indices,
                 plan = plans[slot]
                 if plan.column == column and plan.row == row and plan.level == level:
                     found[count] = slot
-                    count += _touch(box, boxes[slot])
+                    count += touch(boxes[slot], box.lower_x, box.lower_y, box.upper_x, box.upper_y)
                 slot = plan.next
     return count
 
 
 @kernel
-def _touch(one: BoxRecord, other: BoxRecord) -> bool:
-    """Return whether two boxes touch or overlap."""
+def touch(box: BoxRecord, lower_x: float, lower_y: float, upper_x: float, upper_y: float) -> bool:
+    """Return whether a box touches or overlaps another one, which is given by its sides."""
     return bool(
-        one.lower_x <= other.upper_x
-        and one.upper_x >= other.lower_x
-        and one.lower_y <= other.upper_y
-        and one.upper_y >= other.lower_y
+        lower_x <= box.upper_x
+        and upper_x >= box.lower_x
+        and lower_y <= box.upper_y
+        and upper_y >= box.lower_y
     )

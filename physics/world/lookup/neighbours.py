@@ -3,12 +3,15 @@
 from ...kernels import kernel
 from ..records import Indices, TraitRecord
 from ..view import (
+    LINKS,
     WorldView,
     boundless_of,
     boxes_of,
     header_of,
+    links_of,
     moving_of,
     near_of,
+    plans_of,
     stack_of,
     static_nodes_of,
     static_tree_of,
@@ -16,6 +19,8 @@ from ..view import (
 )
 from .grid import find_in_grid
 from .tree import find_leaves
+
+TOO_MANY = -1  # instead of the length of a list, see `links`
 
 
 @kernel
@@ -43,47 +48,90 @@ def find_near(world: WorldView, slot: int, only_later: bool) -> int:
         only_later: of the moving bodies, write only those with later slots, so that going through
             all slots gives every pair once.
     """
-    moving, near, traits = moving_of(world), near_of(world), traits_of(world)
-    trait, box = traits[moving[slot]], boxes_of(world)[slot]
+    plan, links, near, traits = (
+        plans_of(world)[slot],
+        links_of(world),
+        near_of(world),
+        traits_of(world),
+    )
+    if plan.near == TOO_MANY:
+        return _look_up(world, slot, only_later)
     least = slot + 1 if only_later else 0
-    count = _append_boundless(world, trait, slot, least)
-    if header_of(world).static_nodes > 0:
-        first = count
-        found = find_leaves(
-            static_tree_of(world), static_nodes_of(world), box, stack_of(world), near, count
-        )
-        for index in range(first, found):
-            near[count] = near[index]
-            count += interacts(trait, traits[near[index]])
-    sort_items(near, count)
-    if header_of(world).has_grid:
-        first = count
-        found = find_in_grid(world, box, near, count)
-        for index in range(first, found):
-            other = near[index]
-            if other >= least and other != slot:
-                near[count] = moving[other]
-                count += interacts(trait, traits[moving[other]])
-    else:
-        for other in range(least, moving.shape[0]):
-            if other != slot:
-                near[count] = moving[other]
-                count += interacts(trait, traits[moving[other]])
+    count = 0
+    for index in range(slot * LINKS, slot * LINKS + plan.near):
+        near[count] = links[index]
+        theirs = traits[near[count]].slot
+        count += theirs < 0 or theirs >= least
+    if not header_of(world).has_grid:
+        count = _append_moving(world, slot, least, count)
     return count
 
 
 @kernel
-def _append_boundless(world: WorldView, trait: TraitRecord, slot: int, least: int) -> int:
-    """Append bodies without bounds; return how many there are."""
-    traits, boundless, near = traits_of(world), boundless_of(world), near_of(world)
+def _look_up(world: WorldView, slot: int, only_later: bool) -> int:
+    """Do the same for a body without a list."""
+    moving, near, traits = moving_of(world), near_of(world), traits_of(world)
+    trait = traits[moving[slot]]
+    least = slot + 1 if only_later else 0
+    count = find_fixed(world, slot, near)
+    if only_later:
+        first, count = count, 0
+        for index in range(first):
+            theirs = traits[near[index]].slot
+            near[count] = near[index]
+            count += theirs < 0 or theirs >= least
+    if not header_of(world).has_grid or trait.boundless:
+        return _append_moving(world, slot, least, count)
+    first = count
+    for index in range(first, find_in_grid(world, boxes_of(world)[slot], near, count)):
+        other = near[index]
+        if other >= least and other != slot:
+            near[count] = moving[other]
+            count += interacts(trait, traits[moving[other]])
+    return count
+
+
+@kernel
+def _append_moving(world: WorldView, slot: int, least: int, count: int) -> int:
+    """Append all moving bodies from slot ``least`` on that a body may meet; return the count.
+
+    With a grid, those without bounds are there already.
+    """
+    moving, near, traits = moving_of(world), near_of(world), traits_of(world)
+    trait = traits[moving[slot]]
+    has_grid = header_of(world).has_grid
+    for other in range(least, moving.shape[0]):
+        theirs = traits[moving[other]]
+        if other != slot and not (has_grid and theirs.boundless):
+            near[count] = moving[other]
+            count += interacts(trait, theirs)
+    return count
+
+
+@kernel
+def find_fixed(world: WorldView, slot: int, found: Indices) -> int:
+    """Write those fixed bodies into ``found`` that a moving body may meet; return how many.
+
+    These are the static bodies and, if there is a grid of moving ones, those that it does not have
+    because they are without bounds. They are in order.
+    """
+    traits, boundless = traits_of(world), boundless_of(world)
+    trait = traits[moving_of(world)[slot]]
     has_grid = header_of(world).has_grid
     count = 0
     for index in range(boundless.shape[0]):
         theirs = traits[boundless[index]].slot
-        # Without a grid of moving bodies, all of them are tested anyway.
-        if theirs < 0 or (has_grid and theirs >= least and theirs != slot):
-            near[count] = boundless[index]
+        # Without a grid, all moving bodies are tested anyway.
+        if theirs < 0 or (has_grid and theirs != slot):
+            found[count] = boundless[index]
             count += interacts(trait, traits[boundless[index]])
+    if header_of(world).static_nodes > 0:
+        first = count
+        tree, nodes, box = static_tree_of(world), static_nodes_of(world), boxes_of(world)[slot]
+        for index in range(first, find_leaves(tree, nodes, box, stack_of(world), found, count)):
+            found[count] = found[index]
+            count += interacts(trait, traits[found[count]])
+    sort_items(found, count)
     return count
 
 
