@@ -159,7 +159,7 @@ def build_setup(
         stale=np.zeros(len(moving), np.int64),
         places=np.zeros(len(moving), np.int64),
         members=np.zeros(group, Member),
-        touches=np.zeros(TOUCHES * (group + 2), Touch),
+        touches=np.zeros(TOUCHES * (group + 2) + 1, Touch),
         stack=np.zeros(STACK, np.int64),
     )
     enter_static(workspace)

@@ -17,6 +17,7 @@ from ..view import (
 )
 from .changes import count_hit, count_rest, predict_stale, reach_stage, shrink_box
 from .gathering import gather_due, join_neighbours
+from .order import sort_group
 from .pair import turn_velocity
 from .passing import slowest_hit
 from .solver import group_speed, lacking, resolve
@@ -38,6 +39,7 @@ def meet_together(
     """
     gather_due(world, slot, now, now_low)
     join_neighbours(world, now, now_low)
+    sort_group(world)
     has_room_for_all = True
     tolerance = ROUGHLY  # until it is known who is in the group
     for _ in range(2 * touches_of(world).shape[0]):  # two rounds at least add a touch, or end it
