@@ -119,11 +119,11 @@ Plan = record_dtype(
         ("time_low", np.float64),
         ("at", np.float64),  # when the body was where its motion says
         ("at_low", np.float64),
+        ("hits", np.int64),  # in this step
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
         ("normal_x", np.float64),  # from this body to its partner
         ("normal_y", np.float64),
-        ("hits", np.int64),  # in this step
         ("fresh", np.int64),  # 1: its plan does not hold, and it may overlap others
         # The slots of the bodies that plan to meet this one are a list; -1 where it ends.
         ("suitor", np.int64),
@@ -137,21 +137,22 @@ Plan = record_dtype(
         ("near", np.int64),  # bodies that it may meet there; -1: too many for its list
         ("fixed", np.int64),  # of these, how many are not found by the grid
         ("is_linked", np.int64),
-        ("level", np.int64),  # of the grid
-        ("column", np.int64),
-        ("row", np.int64),
-        ("next", np.int64),  # slots of the neighbours in the list of its cell, or -1
-        ("previous", np.int64),
+        ("previous", np.int64),  # the slot before it in the list of its cell, or -1
     ]
 )
 
-# Where a body may be before it leaves its box, with the body's extent.
+# Where a body may be before it leaves its box, with the body's extent; and its place in the grid.
+# 64 bytes, as a processor reads them.
 Box = record_dtype(
     [
         ("lower_x", np.float64),
         ("lower_y", np.float64),
         ("upper_x", np.float64),
         ("upper_y", np.float64),
+        ("level", np.int64),
+        ("column", np.int64),
+        ("row", np.int64),
+        ("next", np.int64),  # the next slot in the list of its cell, or -1
     ]
 )
 
