@@ -1,8 +1,4 @@
-"""Every tolerance of the engine, with its unit and its reason.
-
-Whether two discs, boxes or a disc and a face overlap, and when they meet, is decided by comparing
-floating-point numbers as they are.
-"""
+"""Every tolerance of the engine, with its unit and its reason."""
 
 # Radians. Two directions closer than this count as parallel. Rotating a polygon leaves errors of
 # about 1e-16 in its normals; two strips that are meant to be parallel must not become inseparable
@@ -17,19 +13,57 @@ NO_SPEED_SQUARED = 1e-290
 # edge shorter than this is a corner: rounding alone can make or unmake it.
 NO_LENGTH = 1e-12
 
-# A fraction of a point's coordinates (plus the overlap itself). A body that moved to where it
-# touches may overlap by a few of the last digits, 1e-16. One that overlaps by more was put there,
-# and is relaxed.
-NO_DEPTH = 1e-12
+# A fraction of the coordinates of two bodies and of their sizes, along an axis: 4096 roundings of
+# these numbers. Up to this gap, and up to this overlap, the two touch. Finding the gap takes about
+# 16 roundings, and each step in which a body slides down a slope adds one. A body that is deeper
+# was put there, and is relaxed.
+TOUCH = 2.0**-41
 
-# A fraction of the bodies' speeds. Bodies that approach more slowly only seem to, by the rounding
-# of the bounce before.
-NO_APPROACH = 1e-15
+# A fraction of the speeds that two bodies have had since their plans were made, |vx| + |vy|. Bodies
+# that approach more slowly only seem to, by the rounding of the hits before: each leaves an error
+# of a few last digits, 1e-16, of what the speeds were. If they touch, they rest.
+NO_APPROACH = 1e-14
 
 # Rounds of relaxation at the beginning of a step. In a pile where each body pushes the next one,
 # each round reduces the overlaps by a constant factor; where there is no room, this limit ends it.
 RELAX_ROUNDS = 64
 
-# A fraction of the coordinates of where two bodies meet. Points closer than this count as one:
-# which of two static bodies is met first there is a matter of rounding.
-SAME_POINT = 1e-15
+# A fraction of a body's speed. Which of two static bodies it meets first is a matter of rounding if
+# it touches both; they are compared if it approaches them at least this fast.
+FLATTEST = 1e-9
+
+# Lengths and speeds. The engine multiplies up to two of them, and the squares of larger ones are no
+# numbers.
+FARTHEST = 1e140
+
+# A fraction of a group's speeds, and of the changes of them. A group is resolved when no touch
+# lacks more; the hits that would follow are slower than NO_APPROACH.
+RESOLVED = 4e-15
+
+# The same, while bodies still join the group.
+ROUGHLY = 0.01
+
+# Steps of the method that resolves a group: some, and some for each touch. It needs about one for
+# each touch; rounding costs a few more.
+STEPS = 64
+STEPS_PER_TOUCH = 8
+
+# A fraction. If a course, in the method that resolves a group, bends less than this, there is no
+# end to it: the bodies have no room. Masses of 1 : 1e9 still bend by 1e-10. Bodies that press each
+# other along a line that is straight to 1e-6 would leave it a million times faster.
+NO_BEND = 1e-12
+
+# Where bodies have no room, each touch gets what it lacks so often. There is no right answer.
+SWEEPS = 8
+
+# Hits of a body at one time. If it bounces on and loses speed each time, there is no end to it: a
+# geometric series. After so many, all that is left of it is lost at once.
+MOST_AT_ONCE = 32
+
+# How often a body comes to rest before it slides: while bodies that rest on each other slide, the
+# directions may turn, so that they hit each other again, always sooner.
+MOST_RESTS = 8
+
+# What slides rests on what it approaches with no more than this fraction of the speeds, as for
+# NO_APPROACH. It looks again when it has gone this fraction of its size: so far it may sink in.
+SLIDE = 0.01

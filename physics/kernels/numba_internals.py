@@ -16,6 +16,8 @@ has one test for each part, which says what is missing and where it is used:
 ``UserProvidedCacheLocator``        to read a folder that may not be written
 ``FunctionCache._impl``             to name the files of machine code
 ``FunctionCache._cache_file``       to put our files in place of Numba's
+``FunctionCache._load_overload``    to load them before Numba knows how to compile
+``rtsys.initialize``                the same
 ``serialize.dumps``                 to write them
 ``event`` ``numba:compile``         to notice that the compiler is at work
 ``intrinsic, arrayobj``             to make arrays that count no references
@@ -36,6 +38,7 @@ from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs to this Numba
 from numba.core.extending import intrinsic
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 from numba.np.arrayobj import make_array, populate_array
 
@@ -143,9 +146,14 @@ class KernelCache(FunctionCache):  # type: ignore[misc]
         self._cache_file = CodeFiles(Path(self.cache_path), self._impl.filename_base, dumps)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Load the machine code for one signature; None if there is none that can be read."""
+        """Load the machine code for one signature; None if there is none that can be read.
+
+        Numba would first load all that it can compile, which takes longer than everything else.
+        Code that is ready needs Numba's run time at most.
+        """
+        rtsys.initialize(target_context)
         with suppress(OSError):
-            return super().load_overload(sig, target_context)
+            return self._load_overload(sig, target_context)
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:

@@ -61,8 +61,8 @@ class WorldBatch:
         times = self.times
         first, last = f"{times.min():g}", f"{times.max():g}"
         when = first if first == last else f"{first} to {last}"
-        bodies = f"{len(self.moving)} moving bodies each"
-        return f"<WorldBatch of {len(self)} worlds ({bodies}) at time {when}>"
+        bodies = f"moving bodies in each: {len(self.moving)}"
+        return f"<WorldBatch of {len(self)} ({bodies}) at time {when}>"
 
     @property
     def times(self) -> FloatArray:
@@ -71,7 +71,7 @@ class WorldBatch:
 
     @property
     def capped(self) -> npt.NDArray[np.int64]:
-        """How often a body has used up its hits of a step, int64 [num_worlds], a copy."""
+        """How often a body has used up its hits of a step, or had no room, int64 [num_worlds]."""
         return self._clocks()["capped"].copy()
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:

@@ -6,9 +6,9 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, overlap_between
 from ..pairs.touching_point import touching_point
 from .clock_time import is_earlier, later
+from .courses import margins_of, motion_at
 from .lookup.inside import has_free_pair, put_inside, take_outside
 from .lookup.tree import NO_ONE
-from .prediction import motion_at
 from .records import BEGIN, END, Hits
 from .view import (
     WorldView,
@@ -165,9 +165,10 @@ def _overlap(world: WorldView, a: int, b: int) -> bool:
     their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
     dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
     shapes, edges = shapes_of(world), edges_of(world)
-    if overlap_between(shapes, edges, one, other, dx, dy):
+    margin_x, margin_y = margins_of(world, a, b, x, y, their_x, their_y)
+    if overlap_between(shapes, edges, one, other, dx, dy, margin_x, margin_y):
         return True
-    time, _, _ = impact_between(shapes, edges, one, other, dx, dy, ux, uy, 0.0)
+    time, _, _ = impact_between(shapes, edges, one, other, dx, dy, ux, uy, 0.0, margin_x, margin_y)
     return bool(time == 0.0)
 
 

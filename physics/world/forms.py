@@ -25,7 +25,7 @@ class Scene:
         overrides: the restitution of single pairs, a < b.
         inside: pairs of a sensor and a body inside it.
         time: as a sum of two numbers, see `clock_time`.
-        capped: how often a body has used up its hits of a step.
+        capped: how often a body has used up its hits of a step, or had no room.
     """
 
     is_continuous: bool
@@ -95,6 +95,7 @@ class Built:
             self.setup.records(self.states, part, Motion)[0] = self.motions.view(Motion)[:, 0]
         plans = self.setup.records(self.states, "plans", Plan)[0]
         plans["at"], plans["at_low"] = scene.time
+        plans["speed"] = np.abs(self.motions[:, 2:]).sum(axis=1)
         plans["fresh"] = 1
         self.clock = self.states[0, : Clock.itemsize].view(Clock)
         self.clock["time"], self.clock["time_low"] = scene.time

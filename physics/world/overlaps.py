@@ -7,12 +7,13 @@ from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..tolerances import NO_DEPTH, RELAX_ROUNDS
+from ..tolerances import RELAX_ROUNDS
+from .courses import margins_of, motion_at, move_to
 from .events import enter_sensor, has_room, write_event
-from .impacts import bounce_pair, move_to
 from .lookup.boxes import first_margin, fit, follow
 from .lookup.neighbours import find_near, sort_items
-from .prediction import is_inside, motion_at
+from .meetings.pair import bounce_pair
+from .prediction import is_inside
 from .records import HIT, Hits
 from .view import (
     WorldView,
@@ -63,8 +64,8 @@ def _relax_body(world: WorldView, slot: int) -> bool:
         theirs = traits[other].slot
         if 0 <= theirs < slot and plans[theirs].fresh:
             continue  # it was its turn
-        found, normal_x, normal_y, depth, x, y = _solid_contact(world, body, other)
-        if found and depth > NO_DEPTH * (abs(x) + abs(y) + depth):
+        found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
+        if found:
             _begin_anew(world, body)
             _begin_anew(world, other)
             _move_apart(world, body, other, normal_x, normal_y, depth)
@@ -140,13 +141,10 @@ def _contact_at(
     """Return the contact of two bodies at a time, with the point in the world's coordinates."""
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
+    first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
+    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
     found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes_of(world),
-        edges_of(world),
-        traits_of(world)[a].collider,
-        traits_of(world)[b].collider,
-        bx - ax,
-        by - ay,
+        shapes_of(world), edges_of(world), first, second, bx - ax, by - ay, margin_x, margin_y
     )
     return found, normal_x, normal_y, depth, ax + x, ay + y
 

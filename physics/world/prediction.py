@@ -8,19 +8,21 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
-from ..shapes.records import Edges, ShapeRecord
-from ..tolerances import NO_APPROACH, SAME_POINT
+from ..pairs.touching import margin_along
+from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
 from .clock_time import elapsed, is_earlier, later
+from .courses import margins_of, motion_at, place_at, short_way
 from .lookup.boxes import time_to_leave
 from .lookup.inside import find_inside
 from .lookup.neighbours import find_near
 from .lookup.tree import NO_ONE
-from .records import LEAVE, MEET, NOTHING, MotionRecord, PlanRecord, TraitRecord
+from .meetings.passing import passes_by
+from .meetings.ties import is_straighter
+from .records import LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
     edges_of,
-    header_of,
     motions_of,
     moving_of,
     near_of,
@@ -38,26 +40,6 @@ SPARE = 1e-9
 
 
 @kernel
-def is_capped(world: WorldView, slot: int) -> bool:
-    """Return whether a body has used up its hits of this step, and so stays where it is."""
-    return bool(slot >= 0 and plans_of(world)[slot].hits >= header_of(world).max_hits)
-
-
-@kernel
-def motion_at(
-    world: WorldView, body: int, now: float, now_low: float
-) -> tuple[float, float, float, float]:
-    """Return (x, y, vx, vy) of a body at a time within the step."""
-    trait = traits_of(world)[body]
-    if trait.slot < 0:
-        return trait.home_x, trait.home_y, 0.0, 0.0
-    motion = motions_of(world)[trait.slot]
-    plan = plans_of(world)[trait.slot]
-    since = 0.0 if is_capped(world, trait.slot) else elapsed(now, now_low, plan.at, plan.at_low)
-    return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
-
-
-@kernel
 def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
     """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
     if one.sensor >= 0:
@@ -65,44 +47,6 @@ def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b:
     if other.sensor >= 0:
         return find_inside(world, b, a) != NO_ONE
     return False
-
-
-@kernel
-def _approaches(vx: float, vy: float, normal_x: float, normal_y: float, speed: float) -> bool:
-    """Return whether two bodies that touch or overlap, perhaps only by rounding, have to bounce.
-
-    Args:
-        vx, vy: velocity of the second body, to which the normal points, relative to the first.
-        normal_x, normal_y: the normal.
-        speed: the sum of both bodies' speeds, on which the rounding of the velocity depends.
-    """
-    return bool(-(vx * normal_x + vy * normal_y) > NO_APPROACH * speed)
-
-
-@kernel
-def _skewness(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
-    """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
-    least = 1.0
-    for index in range(shape.first, shape.first + shape.count):
-        edge = edges[index]
-        least = min(least, abs(edge.normal_x * y - edge.normal_y * x))
-    return least
-
-
-@kernel
-def _is_straighter(
-    world: WorldView, plan: PlanRecord, other: int, normal_x: float, normal_y: float
-) -> bool:
-    """Return whether a body is met more along a face's normal than the partner that is planned.
-
-    This decides between two bodies that are met at the same time, within rounding. A disc that
-    lands on the seam of two boxes meets the face of one and not the corner of the other.
-    """
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    rank = _skewness(shapes[traits[other].collider], edges, normal_x, normal_y)
-    partner = shapes[traits[plan.partner].collider]
-    best_rank = _skewness(partner, edges, plan.normal_x, plan.normal_y)
-    return bool(rank < best_rank or (rank == best_rank and other < plan.partner))
 
 
 @kernel
@@ -119,8 +63,9 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     _forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
-    if not is_capped(world, slot):
-        _find_event(world, slot, now, now_low, only_later)
+    plan.slack = 0.0
+    plan.tied = 0
+    _find_event(world, slot, now, now_low, only_later)
     if plan.kind == MEET:
         _join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
@@ -160,15 +105,6 @@ def _forget_partner(world: WorldView, slot: int) -> None:
 
 
 @kernel
-def _place(
-    motion: MotionRecord, plan: PlanRecord, now: float, now_low: float
-) -> tuple[float, float]:
-    """Return the position at a time of a body that is not capped."""
-    since = elapsed(now, now_low, plan.at, plan.at_low)
-    return motion.x + motion.vx * since, motion.y + motion.vy * since
-
-
-@kernel
 def _meeting(
     world: WorldView,
     slot: int,
@@ -180,36 +116,52 @@ def _meeting(
 ) -> tuple[float, float, float, float]:
     """Return (duration, normal_x, normal_y, slack) of when two bodies meet, seen from a time.
 
-    The duration is inf if they don't meet before the time ``best`` plus the slack, within which two
-    meetings with static bodies count as simultaneous. Bodies that touch or overlap meet only if
-    they have to bounce.
+    The duration is inf if they don't meet before the time ``best``, or so soon after it that
+    rounding decides. Bodies that touch or overlap meet only if they have to bounce. For so much as
+    the slack before they meet, they touch already.
     """
     shapes, plans, motions = shapes_of(world), plans_of(world), motions_of(world)
-    own, trait = traits_of(world)[moving_of(world)[slot]], traits_of(world)[other]
-    motion = motions[slot]
-    x, y = _place(motion, plans[slot], since, since_low)
-    dx, dy, ux, uy, speed = trait.home_x - x, trait.home_y - y, -motion.vx, -motion.vy, 0.0
-    slack = 0.0
+    body = moving_of(world)[slot]
+    own, trait = traits_of(world)[body], traits_of(world)[other]
+    motion, plan = motions[slot], plans[slot]
+    x, y = place_at(motion, plan, since, since_low)
+    their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
+    late = plan.slack
     if trait.slot >= 0:
         theirs = motions[trait.slot]
-        their_x, their_y = _place(theirs, plans[trait.slot], since, since_low)
-        dx, dy, ux, uy = their_x - x, their_y - y, theirs.vx - motion.vx, theirs.vy - motion.vy
-        speed = abs(theirs.vx) + abs(theirs.vy)
-    elif ux * ux + uy * uy > 0.0:
+        their_x, their_y = place_at(theirs, plans[trait.slot], since, since_low)
+        ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
+    dx, dy = their_x - x, their_y - y
+    if trait.slot < 0 and ux * ux + uy * uy > 0.0:
         coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-        slack = SAME_POINT * coordinates / math.sqrt(ux * ux + uy * uy)
-    left = elapsed(best, best_low, since, since_low) + slack
+        late = max(late, TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy)))
+    left = elapsed(best, best_low, since, since_low) + late
     if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, left):
-        return math.inf, 0.0, 0.0, slack
+        return math.inf, 0.0, 0.0, 0.0
+    margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
     time, normal_x, normal_y = impact_between(
-        shapes, edges_of(world), own.collider, trait.collider, dx, dy, ux, uy, left
+        shapes,
+        edges_of(world),
+        own.collider,
+        trait.collider,
+        dx,
+        dy,
+        ux,
+        uy,
+        left,
+        margin_x,
+        margin_y,
     )
-    if time == 0.0 and own.sensor < 0 and trait.sensor < 0:
-        progress_of(world).touching = 1
-        speed += abs(motion.vx) + abs(motion.vy)
-        if not _approaches(ux, uy, normal_x, normal_y, speed):
-            return math.inf, 0.0, 0.0, slack
-    return time, normal_x, normal_y, slack
+    if time == math.inf:
+        return math.inf, 0.0, 0.0, 0.0
+    closing = -(ux * normal_x + uy * normal_y)
+    margin = margin_along(normal_x, normal_y, margin_x, margin_y)
+    if own.sensor < 0 and trait.sensor < 0:
+        if time == 0.0:
+            progress_of(world).touching = 1
+        if time * closing <= margin and passes_by(world, body, other, closing):
+            return math.inf, 0.0, 0.0, 0.0
+    return time, normal_x, normal_y, margin / closing if closing > 0.0 else 0.0
 
 
 @kernel
@@ -231,7 +183,7 @@ def _may_meet(
     Args:
         world, slot: the first body; x, y: where it is now.
         trait: of the other body.
-        now, now_low: the time; left: how much time is left.
+        now, now_low: the time; left: how much time is left until something else happens.
     """
     motion, theirs = motions_of(world)[slot], motions_of(world)[trait.slot]
     plan = plans_of(world)[trait.slot]
@@ -283,7 +235,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     body = moving_of(world)[slot]
     own = traits[body]
     x, y, vx, vy = motion_at(world, body, now, now_low)
-    best, best_low = _plan_to_leave(plan, x, y, vx, vy, now, now_low)
+    best, best_low = _plan_alone(world, slot, x, y, vx, vy, now, now_low)
     left = elapsed(best, best_low, now, now_low)
     for index in range(find_near(world, slot, only_later)):
         other = near[index]
@@ -291,8 +243,6 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
         since, since_low = plan.at, plan.at_low
         if trait.slot >= 0:
             theirs = plans[trait.slot]
-            if theirs.hits >= header_of(world).max_hits:
-                continue
             if not _may_meet(world, slot, trait, x, y, now, now_low, left):
                 continue
             if is_earlier(since, since_low, theirs.at, theirs.at_low):
@@ -311,36 +261,68 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             if time == math.inf:
                 continue
             begin, begin_low = later(now, now_low, time)
-        if plan.kind == MEET and abs(elapsed(begin, begin_low, best, best_low)) <= slack:
-            is_first = _is_straighter(world, plan, other, normal_x, normal_y)
-        else:
-            # At the same time, a meeting comes before leaving. Of two meetings, the order of the
-            # bodies decides.
-            is_first = is_earlier(begin, begin_low, best, best_low) or (
-                begin == best
-                and begin_low == best_low
-                and (plan.kind != MEET or other < plan.partner)
+        wait = elapsed(begin, begin_low, best, best_low)
+        # At the same time as the best so far: then the later one is touched already.
+        is_tied = plan.kind == MEET and -plan.slack <= wait <= slack
+        are_static = trait.slot < 0 and traits[plan.partner].slot < 0
+        if is_tied and (wait == 0.0 or are_static):
+            is_first = is_straighter(
+                world,
+                body,
+                other,
+                normal_x,
+                normal_y,
+                plan.partner,
+                plan.normal_x,
+                plan.normal_y,
+                best,
+                best_low,
             )
+        else:
+            # At the same time, a meeting comes before what a body does alone.
+            is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)
+        if is_tied:
+            plan.tied = 1
+        elif is_first:
+            plan.tied = 0
         if is_first:
             best, best_low = begin, begin_low
-            left = elapsed(best, best_low, now, now_low) * (1.0 + SPARE)
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
             plan.normal_y = normal_y
+            plan.slack = slack
+            left = elapsed(best, best_low, now, now_low) * (1.0 + SPARE) + slack
     if plan.kind != NOTHING:
         plan.time, plan.time_low = best, best_low
 
 
 @kernel
-def _plan_to_leave(
-    plan: PlanRecord, x: float, y: float, vx: float, vy: float, now: float, now_low: float
+def _plan_alone(
+    world: WorldView,
+    slot: int,
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    now: float,
+    now_low: float,
 ) -> tuple[float, float]:
-    """Plan to leave the box, if the body does; return when, as a time in two numbers."""
+    """Plan what a body does alone: to leave its box, or to look again what it slides into.
+
+    It is at (x, y) with the velocity (vx, vy). This returns when, as a time in two numbers.
+    """
+    plan = plans_of(world)[slot]
     duration = time_to_leave(plan, x, y, vx, vy)
-    if duration == math.inf:
+    if duration < math.inf:
+        plan.kind = LEAVE
+    if plan.rests >= MOST_RESTS:
+        way, speed = short_way(world, moving_of(world)[slot]), abs(vx) + abs(vy)
+        if speed > 0.0 and way < duration * speed:
+            plan.kind = LOOK
+            duration = way / speed
+    if plan.kind == NOTHING:
         return math.inf, 0.0
-    plan.kind = LEAVE
     return later(now, now_low, duration)
 
 

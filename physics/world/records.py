@@ -28,13 +28,20 @@ END = 2
 NOTHING = 0  # to move straight on until the step ends
 LEAVE = 1  # to leave its box
 MEET = 2  # to meet its partner
+LOOK = 3  # to look again what it slides into
+
+# What a body's hits of this step have made of it (`Plan.stage`).
+FREE = 0  # it bounces
+INERT = 1  # it has used up `max_hits`: it bounces no more
+CRUSHED = 2  # it has no room: what touches it moves into it
+HELD = 3  # it has used up as many again: it stays where it is, as if it had no mass
 
 # Times are sums of two numbers, of which the second is small: see `clock_time`.
 Clock = record_dtype(
     [
         ("time", np.float64),  # simulated so far
         ("time_low", np.float64),
-        ("capped", np.int64),  # how often a body used up its hits of a step
+        ("capped", np.int64),  # how often a body used up its hits of a step, or had no room
         ("planned", np.int64),  # 1: the plans hold, but for fresh bodies and those that users moved
         ("fresh", np.int64),  # 1: there are fresh bodies, see `Plan`
     ]
@@ -74,6 +81,7 @@ Header = record_dtype(
         ("sensors", np.int64),
         ("max_hits", np.int64),  # of one body in one step
         ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
+        ("inelastic", np.int64),  # 1: some bodies do not bounce
         ("typical", np.float64),  # length: the median of the bodies' sizes
         ("cell", np.float64),  # size of the cells of the grid that suit a typical body
         ("has_grid", np.int64),  # 0: so few bodies move that a grid of them is not worth it
@@ -97,6 +105,11 @@ Header = record_dtype(
         ("found_at", np.int64),
         ("stale_at", np.int64),
         ("stack_at", np.int64),
+        ("places_at", np.int64),
+        ("members_at", np.int64),
+        ("members", np.int64),
+        ("touches_at", np.int64),
+        ("touches", np.int64),
         # The same for the state, which begins with the clock and the motions that users see.
         ("shown_after_step_at", np.int64),
         ("motions_at", np.int64),
@@ -119,11 +132,17 @@ Plan = record_dtype(
         ("time_low", np.float64),
         ("at", np.float64),  # when the body was where its motion says
         ("at_low", np.float64),
-        ("hits", np.int64),  # in this step
+        ("hits", np.int64),  # in this step; from 0 again at each later stage
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
         ("normal_x", np.float64),  # from this body to its partner
         ("normal_y", np.float64),
+        ("slack", np.float64),  # what rounding may add to the time until it meets its partner
+        ("tied", np.int64),  # 1: it meets another body at the same time
+        ("speed", np.float64),  # |vx| + |vy|, the most since a user last wrote it
+        ("rests", np.int64),  # how often it has come to rest since it went some way
+        ("instant", np.int64),  # hits at the time of its last one
+        ("stage", np.int64),  # FREE, INERT, CRUSHED or HELD
         ("fresh", np.int64),  # 1: its plan does not hold, and it may overlap others
         # The slots of the bodies that plan to meet this one are a list; -1 where it ends.
         ("suitor", np.int64),
@@ -199,6 +218,52 @@ Progress = record_dtype(
         ("full", np.int64),  # 1: there was no room for another hit
         ("touching", np.int64),  # 1: two bodies overlap or touch
         ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
+        ("inert", np.int64),  # 1: for a body, the hits before decide how it bounces
+        ("members", np.int64),  # of the group that is resolved
+        ("touches", np.int64),  # between them
+        ("elastic", np.int64),  # 1: one of these bounces
+        ("receding", np.int64),  # 1: the bodies of one receded at first
+    ]
+)
+
+# A moving body of a group that is resolved together, while that lasts.
+Member = record_dtype(
+    [
+        ("body", np.int64),
+        ("inverse_mass", np.float64),
+        ("old_vx", np.float64),  # before
+        ("old_vy", np.float64),
+        ("vx", np.float64),  # after, as far as it is known
+        ("vy", np.float64),
+        ("seen_vx", np.float64),  # when its neighbours were last tested
+        ("seen_vy", np.float64),
+        ("seen", np.int64),  # 1: they have been
+        ("turn_x", np.float64),  # how a step along the course changes its velocity, see `solver`
+        ("turn_y", np.float64),
+        ("met", np.int64),  # touches, and then hits
+        ("rests", np.int64),  # 1: some are inelastic
+    ]
+)
+
+# Two bodies of a group that touch and must not approach each other any more.
+Touch = record_dtype(
+    [
+        ("one", np.int64),  # a member
+        ("other", np.int64),  # a member, or -1 for a static body
+        ("a", np.int64),  # their bodies
+        ("b", np.int64),
+        ("normal_x", np.float64),  # from a to b
+        ("normal_y", np.float64),
+        ("share_a", np.float64),  # of what an impulse changes of their relative speed
+        ("share_b", np.float64),
+        ("restitution", np.float64),
+        ("aim", np.float64),  # the speed at which they have to recede
+        ("change", np.float64),  # of their relative speed, by the impulse
+        # See `solver`.
+        ("weight", np.float64),  # the mass that the two have for an impulse
+        ("slope", np.float64),
+        ("course", np.float64),
+        ("bend", np.float64),
     ]
 )
 
@@ -236,4 +301,7 @@ Pairs: TypeAlias = Any  # `Pair` [room]
 PlanRecord: TypeAlias = Any  # one `Plan`
 Plans: TypeAlias = Any  # `Plan` [movers]
 ProgressRecord: TypeAlias = Any  # one `Progress`
+Members: TypeAlias = Any  # `Member` [room]
+Touches: TypeAlias = Any  # `Touch` [room]
+TouchRecord: TypeAlias = Any  # one `Touch`
 Hits: TypeAlias = Any  # `Hit` [room]

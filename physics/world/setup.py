@@ -18,7 +18,7 @@ from .lookup.boxes import enter_static, typical_width
 from .lookup.grid import SPARE
 from .lookup.overrides import override_table
 from .lookup.tree import NO_ONE
-from .records import Box, Grid, Header, Motion, Node, Plan, Progress, Trait, Tree
+from .records import Box, Grid, Header, Member, Motion, Node, Plan, Progress, Touch, Trait, Tree
 from .tournament import leaf_count
 from .view import CLOCK_SIZE, LEVELS, LINKS, STACK
 
@@ -26,6 +26,10 @@ ByteArray = npt.NDArray[np.uint8]
 
 # With so few moving bodies there is no grid of them.
 FEW_MOVING = 8
+# Bodies that can be resolved together, and touches of each of them that there is room for. Of a
+# larger group, the rest is resolved after the first part.
+LARGEST_GROUP = 512
+TOUCHES = 4
 
 
 @dataclass(frozen=True)
@@ -130,6 +134,7 @@ def build_setup(
     traits["boundless"] = ~_have_bounds(sizes)
     header = np.zeros(1, Header)
     header["max_hits"], header["continuous"] = max_hits, continuous
+    header["inelastic"] = (traits["restitution"] == 0.0).any() or 0.0 in overrides.values()
     header["typical"] = _typical(sizes[traits["boundless"] == 0])
     header["cell"] = typical_width(header["typical"][0]) * (1.0 + 4.0 * SPARE)
     header["has_grid"] = len(moving) > FEW_MOVING
@@ -137,6 +142,7 @@ def build_setup(
     header["sensors"] = len(sensing)
     _plan_state(header)
     is_tree = ~moves & (traits["boundless"] == 0)
+    group = min(len(moving), LARGEST_GROUP)
     workspace = _pack(
         header,
         traits=traits,
@@ -151,6 +157,9 @@ def build_setup(
         near=np.zeros(len(specs), np.int64),
         found=np.zeros(len(specs), np.int64),
         stale=np.zeros(len(moving), np.int64),
+        places=np.zeros(len(moving), np.int64),
+        members=np.zeros(group, Member),
+        touches=np.zeros(TOUCHES * (group + 2), Touch),
         stack=np.zeros(STACK, np.int64),
     )
     enter_static(workspace)

@@ -31,9 +31,11 @@ Kept = record_dtype(
         ("motion", Motion),
         ("at", np.float64),
         ("at_low", np.float64),
+        ("speed", np.float64),
         ("fresh", np.int64),
     ]
 )
+_OF_PLANS = ("at", "at_low", "speed", "fresh")  # the same in `Plan`
 _MANY = 1 << 60  # of what is counted
 
 
@@ -127,7 +129,7 @@ def pack_states(states: ByteArray, insides: Iterable[ByteArray], setup: Setup) -
     kept["shown"] = states[:, CLOCK_SIZE : setup.header.shown_after_step_at].view(Motion)
     kept["after_step"] = setup.records(states, "shown_after_step", Motion)
     kept["motion"] = setup.records(states, "motions", Motion)
-    for name in ("at", "at_low", "fresh"):
+    for name in _OF_PLANS:
         kept[name] = plans[name]
     clocks = states[:, :CLOCK_SIZE].copy().view(Clock)
     clocks["planned"] = 0
@@ -179,8 +181,9 @@ def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> ByteArray
     setup.records(states, "shown_after_step", Motion)[:] = kept["after_step"]
     setup.records(states, "motions", Motion)[:] = kept["motion"]
     plans = setup.records(states, "plans", Plan)
-    plans["hits"] = 0
-    for name in ("at", "at_low", "fresh"):
+    for name in ("hits", "rests", "instant", "stage"):
+        plans[name] = 0
+    for name in _OF_PLANS:
         plans[name] = kept[name]
     return insides
 
@@ -210,6 +213,8 @@ def _check_motions(kept: npt.NDArray[Any], clocks: npt.NDArray[Any]) -> None:
         for name in ("x", "y", "vx", "vy"):
             if not np.isfinite(kept[part][name]).all():
                 raise _corrupt("motions")
+    if not ((kept["speed"] >= 0.0) & np.isfinite(kept["speed"])).all():
+        raise _corrupt("speeds")
     at, low, now, now_low = kept["at"], kept["at_low"], clocks["time"], clocks["time_low"]
     past = (at < now[:, None]) | ((at == now[:, None]) & (low <= now_low[:, None]))
     if not (past & (at + low == at) & ((kept["fresh"] == 0) | (kept["fresh"] == 1))).all():

@@ -8,14 +8,16 @@ import numpy.typing as npt
 from ..kernels import kernel
 from ..kernels.borrowed import BYTE
 from ..kernels.portable.addresses import array_at
-from .clock_time import elapsed, later
+from ..tolerances import MOST_RESTS
+from .clock_time import later
+from .courses import move_to, place_at
 from .events import has_room, leave_all_sensors, leave_placed
-from .impacts import move_to, run_events
+from .impacts import run_events
 from .lookup.boxes import first_margin, fit_all, fit_here
 from .lookup.tree import NO_ONE
 from .overlaps import relax_overlaps, resolve_overlaps
 from .prediction import find_stale, predict
-from .records import NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
+from .records import CRUSHED, FREE, NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
 from .tournament import start_tournament
 from .view import (
     WorldView,
@@ -122,6 +124,7 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     if not abs(progress.end) < math.inf:
         return INVALID
     progress.crowded = 0
+    progress.inert = 0
     is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
     if is_calm and clock.planned:
         return count
@@ -156,6 +159,7 @@ def _adopt_shown(world: WorldView) -> None:
             motion.x, motion.y, motion.vx, motion.vy = seen.x, seen.y, seen.vx, seen.vy
             after.x, after.y, after.vx, after.vy = seen.x, seen.y, seen.vx, seen.vy
             plan.at, plan.at_low = clock.time, clock.time_low
+            plan.speed = abs(seen.vx) + abs(seen.vy)
             plan.fresh = 1
             clock.fresh = 1
 
@@ -224,7 +228,6 @@ def _plan_all(world: WorldView) -> None:
     plans = plans_of(world)
     for slot in range(plans.shape[0]):
         plan = plans[slot]
-        plan.hits = 0
         plan.time = math.inf
         plan.time_low = 0.0
         plan.kind = NOTHING
@@ -269,18 +272,17 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
     total = 0.0
     for slot in range(header.movers):
         motion, plan, seen, after = motions[slot], plans[slot], shown[slot], after_step[slot]
-        is_capped = plan.hits >= header.max_hits
-        # As `motion_at` has it, of which a call costs as much as all the rest.
-        since = 0.0 if is_capped else elapsed(end, end_low, plan.at, plan.at_low)
         vx, vy = motion.vx, motion.vy
-        x, y = motion.x + vx * since, motion.y + vy * since
-        if is_capped or not header.continuous:
-            # It stays where it is for the rest of this step, and flies on from there.
+        x, y = place_at(motion, plan, end, end_low)
+        if not header.continuous:
             motion.x, motion.y = x, y
             plan.at, plan.at_low = end, end_low
+        if not header.continuous or plan.stage >= CRUSHED or plan.rests >= MOST_RESTS:
+            # What it passes by in this step, it hits in the next one.
             plan.fresh = 1
             clock.fresh = 1
-        plan.hits = 0
+        plan.hits = plan.rests = plan.instant = 0
+        plan.stage = FREE
         seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
         after.x, after.y, after.vx, after.vy = x, y, vx, vy
         total += abs(x) + abs(y) + abs(vx) + abs(vy)

@@ -47,3 +47,68 @@ def replay(winners: Indices, plans: Plans, slot: int) -> None:
         if before != slot and winners[node] == before:
             break  # It was beaten here by the same as before.
         node //= 2
+
+
+@kernel
+def is_far_ahead(winners: Indices, plans: Plans, slot: int, other: int, time: float) -> bool:
+    """Return whether the plans of all but the winner, ``slot``, and another one are later.
+
+    Args:
+        winners, plans: the tournament.
+        slot: the winner's.
+        other: the other one's; -1 for none.
+        time: than which they are later.
+    """
+    leaves = winners.shape[0] // 2
+    node = leaves + slot
+    while node > 1:
+        rival = winners[node ^ 1]
+        if rival >= 0 and plans[rival].time <= time:
+            if rival != other:
+                return False
+            # Those that this one has beaten have not met the winner.
+            if not _beats_all(winners, plans, leaves + other, node ^ 1, time):
+                return False
+        node //= 2
+    return True
+
+
+@kernel
+def _beats_all(winners: Indices, plans: Plans, node: int, end: int, time: float) -> bool:
+    """Return whether all plans that a leaf meets on its way up to a node are later than a time."""
+    while node != end:
+        rival = winners[node ^ 1]
+        if rival >= 0 and plans[rival].time <= time:
+            return False
+        node //= 2
+    return True
+
+
+@kernel
+def next_due(winners: Indices, plans: Plans, node: int, time: float, low: float) -> int:
+    """Return the next leaf after a node whose plan's time is not later than a time; 0 if none.
+
+    Args:
+        winners, plans: the tournament.
+        node: a leaf that was returned before; 0 at first.
+        time, low: the time.
+    """
+    leaves = winners.shape[0] // 2
+    node = 1 if node == 0 else _node_after(node)
+    while node > 0:
+        slot = winners[node]
+        if slot < 0 or is_earlier(time, low, plans[slot].time, plans[slot].time_low):
+            node = _node_after(node)
+        elif node >= leaves:
+            return node
+        else:
+            node = 2 * node
+    return 0
+
+
+@kernel
+def _node_after(node: int) -> int:
+    """Return the node to visit next when all below a node has been visited; 0 at the end."""
+    while node % 2 == 1:  # a right child, or the root
+        node //= 2
+    return node + 1 if node > 0 else 0

@@ -18,6 +18,8 @@ from .records import (
     Indices,
     Inside,
     InsideRecord,
+    Member,
+    Members,
     Motion,
     Motions,
     Node,
@@ -30,6 +32,8 @@ from .records import (
     Plans,
     Progress,
     ProgressRecord,
+    Touch,
+    Touches,
     Trait,
     Traits,
     Tree,
@@ -244,6 +248,27 @@ def stale_of(world: WorldView) -> Indices:
     """Return scratch memory for the slots whose plans no longer hold, int64 [movers]."""
     header = header_of(world)
     return borrowed(world.workspace, header.stale_at, header.movers, INDEX)
+
+
+@accessor
+def places_of(world: WorldView) -> Indices:
+    """Return each slot's place in `members_of` plus one, or 0: int64 [movers]."""
+    header = header_of(world)
+    return borrowed(world.workspace, header.places_at, header.movers, INDEX)
+
+
+@accessor
+def members_of(world: WorldView) -> Members:
+    """Return scratch memory for the bodies that are resolved together, `Member` [room]."""
+    header = header_of(world)
+    return borrowed(world.workspace, header.members_at, header.members, Member)
+
+
+@accessor
+def touches_of(world: WorldView) -> Touches:
+    """Return scratch memory for where they touch, `Touch` [room]."""
+    header = header_of(world)
+    return borrowed(world.workspace, header.touches_at, header.touches, Touch)
 
 
 @accessor

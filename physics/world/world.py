@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, not_negative, vector, whole
+from ..arguments import finite, integer, inverse_mass, near, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..drawing import draw_scene
 from ..errors import HitLimitWarning
@@ -60,13 +60,13 @@ class World:
         bodies: added in this order, see `add`.
         continuous: if False, each step is the procedure of the lecture on collisions in games
             instead: move by dt, detect, relax, bounce.
-        max_hits: of one body in one step. A body that has used them up stays where it is for the
-            rest of the step; `capped` counts that, and there is a `HitLimitWarning`. (Only bodies
-            that are squeezed, or very fast, have so many.)
+        max_hits: of one body in one step. A body that has used them up bounces no more in that
+            step: it rests on what it hits. `capped` counts that, and there is a `HitLimitWarning`.
+            (Only bodies that are squeezed, or very fast, have so many.)
     """
 
     def __init__(
-        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 10_000
+        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 1000
     ) -> None:
         # The scene holds what users edit. From the first step on, until the next edit, the built
         # form is ahead of it.
@@ -178,7 +178,7 @@ class World:
 
     @property
     def capped(self) -> int:
-        """How often a body has used up its hits of a step."""
+        """How often a body has used up its hits of a step, or had no room."""
         return (self._built or self._scene).capped
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
@@ -209,9 +209,9 @@ class World:
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
-                f"a body used up its {self._scene.max_hits} hits of a step, and stayed where it "
-                "was for the rest of it. It is squeezed, or so fast that it needs shorter steps or "
-                "a larger max_hits",
+                "a body has no room, or used up the hits of a step (max_hits="
+                f"{self._scene.max_hits}); for the rest of it, it did not bounce. If it is only "
+                "very fast, it needs shorter steps or a larger max_hits",
                 HitLimitWarning,
                 stacklevel=2,
             )
@@ -220,12 +220,12 @@ class World:
     @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that contain a point."""
-        return self._overlapping(Particle(0.0), vector("point", point), mask)
+        return self._overlapping(Particle(0.0), near("point", point), mask)
 
     @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
-        """Return the indices of the bodies that overlap a box, given by two of its corners."""
-        low, high = vector("lower", lower), vector("upper", upper)
+        """Return the indices of the bodies that overlap a box, from its lower left corner up."""
+        low, high = near("lower", lower), near("upper", upper)
         if not (low[0] < high[0] and low[1] < high[1]):
             raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
         middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
@@ -237,9 +237,14 @@ class World:
     def query_ray(
         self, start: Any, end: Any, radius: float = 0.0, mask: int = ALL
     ) -> RayHit | None:
-        """Return what a ray from start to end, or a disc cast along it, meets first; or None."""
-        x, y = vector("start", start)
-        way = np.subtract(vector("end", end), (x, y))
+        """Return what a ray from start to end, or a disc cast along it, meets first; or None.
+
+        A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
+        a side does not. At a corner the normal points against the ray, but is turned no further
+        than the normals of the corner's sides.
+        """
+        x, y = near("start", start)
+        way = np.subtract(near("end", end), (x, y))
         built = self.built()
         index, fraction, normal_x, normal_y = find_first(
             built.states[0],

@@ -10,6 +10,7 @@ It has no influence on any result.
 import math
 
 from ...kernels import kernel
+from ...shapes.records import ShapeRecord
 from ..clock_time import elapsed
 from ..records import Block, PlanRecord
 from ..view import (
@@ -42,7 +43,8 @@ MOST_SHARE = 8.0
 # A box is ahead of the body by this share of the margin, so that the body is in it for longer.
 AHEAD = 0.75
 # It is at least this fraction of the coordinates: far from the origin, smaller steps are rounding.
-# A box is larger than the body and the margin by this fraction of all that made it.
+# A box is larger than the body and the margin by this fraction of all that made it: more than
+# `TOUCH`, so that the boxes of bodies that touch overlap.
 FAR = 1e-9
 ROUNDING = 1e-12
 
@@ -53,13 +55,18 @@ def typical_width(typical: float) -> float:
 
 
 @kernel
+def _reach(shape: ShapeRecord) -> float:
+    """Return how far a shape reaches from its origin along the axes."""
+    return float(max(max(-shape.lower_x, shape.upper_x), max(-shape.lower_y, shape.upper_y)))
+
+
+@kernel
 def first_margin(world: WorldView, slot: int) -> float:
     """Return the margin of a body about which nothing else is known; inf if it has no bounds."""
     trait = traits_of(world)[moving_of(world)[slot]]
     if trait.boundless:
         return math.inf
-    shape = shapes_of(world)[trait.collider]
-    reach = max(max(-shape.lower_x, shape.upper_x), max(-shape.lower_y, shape.upper_y))
+    reach = _reach(shapes_of(world)[trait.collider])
     return float(max(OWN_SHARE * reach, TYPICAL_SHARE * header_of(world).typical))
 
 
@@ -108,7 +115,7 @@ def fit(world: WorldView, slot: int, x: float, y: float, margin: float) -> None:
     plan.margin = margin
     plan.middle_x, plan.middle_y = x, y
     plan.fitted = clock_of(world).time
-    room = margin + ROUNDING * (abs(x) + abs(y) + margin)
+    room = margin + ROUNDING * (abs(x) + abs(y) + _reach(shape) + margin)
     move_box(
         world,
         slot,
@@ -179,7 +186,7 @@ def enter_static(workspace: Block) -> None:
         if trait.slot != NO_ONE or trait.boundless:
             continue
         shape, node = shapes[trait.collider], nodes[body]
-        room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y))
+        room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
         node.lower_x = (trait.home_x + shape.lower_x) - room
         node.lower_y = (trait.home_y + shape.lower_y) - room
         node.upper_x = (trait.home_x + shape.upper_x) + room

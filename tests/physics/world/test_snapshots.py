@@ -96,8 +96,8 @@ def test_snapshots_hold_which_bodies_are_inside_sensors() -> None:
 
 
 def test_a_snapshot_after_many_hits_in_one_step() -> None:
-    world = World([Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))])
-    world.add(Body(Particle(0.5), (1, 0), (1000, 1), mass=1))
+    room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))]
+    world = World([*room, Body(Particle(0.5), (1, 0), (1000, 1), mass=1)], max_hits=2000)
     kept = world.snapshot()
     first = world.step(1.0)
     assert len(first) == 1000
