@@ -6,8 +6,26 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch, overlap_between
 from ..pairs.touching import touch_margins
 from ..shapes.records import Edges, Shapes
-from .records import Block, Indices, TraitRecord
-from .view import WorldView, open_world, shown_of, traits_of
+from .lookup.boxes import fit_shown, is_astray
+from .lookup.grid import find_in_grid
+from .lookup.neighbours import sort_items
+from .lookup.rays import begin_level_walk, begin_tree_walk, find_in_strip, next_leaf
+from .lookup.tree import find_leaves
+from .records import Block, Indices, RayRecord, Rays, TraitRecord
+from .view import (
+    WorldView,
+    boundless_of,
+    found_of,
+    grid_of,
+    header_of,
+    moving_of,
+    open_world,
+    shown_of,
+    stack_of,
+    static_nodes_of,
+    static_tree_of,
+    traits_of,
+)
 
 
 @kernel
@@ -17,6 +35,22 @@ def _position(world: WorldView, trait: TraitRecord) -> tuple[float, float]:
         return trait.home_x, trait.home_y
     motion = shown_of(world)[trait.slot]
     return motion.x, motion.y
+
+
+@kernel
+def _write_unboxed(world: WorldView, found: Indices) -> int:
+    """Write the bodies into ``found`` that neither the tree nor the grid finds; return how many."""
+    boundless, moving, traits = boundless_of(world), moving_of(world), traits_of(world)
+    count = 0
+    for index in range(boundless.shape[0]):
+        found[count] = boundless[index]
+        count += 1
+    has_grid = header_of(world).has_grid
+    for slot in range(moving.shape[0]):
+        if not traits[moving[slot]].boundless and not (has_grid and not is_astray(world, slot)):
+            found[count] = moving[slot]
+            count += 1
+    return count
 
 
 @kernel
@@ -40,10 +74,27 @@ def find_overlapping(
         found: int64 [bodies].
     """
     world = open_world(state, state, workspace)
+    fit_shown(world)
+    traits, moving = traits_of(world), moving_of(world)
     own = shapes.shape[0] - 1
+    shape = shapes[own]
+    lower_x, upper_x = x + shape.lower_x, x + shape.upper_x
+    lower_y, upper_y = y + shape.lower_y, y + shape.upper_y
+    last = _write_unboxed(world, found)
+    if header_of(world).static_nodes > 0:
+        tree, nodes, stack = static_tree_of(world), static_nodes_of(world), stack_of(world)
+        last = find_leaves(tree, nodes, lower_x, lower_y, upper_x, upper_y, stack, found, last)
+    if header_of(world).has_grid:
+        around = found_of(world)
+        for index in range(find_in_grid(world, lower_x, lower_y, upper_x, upper_y, around, 0)):
+            if not is_astray(world, around[index]):
+                found[last] = moving[around[index]]
+                last += 1
+    sort_items(found, last)
     count = 0
-    for body in range(traits_of(world).shape[0]):
-        trait = traits_of(world)[body]
+    for index in range(last):
+        body = found[index]
+        trait = traits[body]
         if (trait.category & mask) == 0:
             continue
         their_x, their_y = _position(world, trait)
@@ -61,49 +112,88 @@ def find_overlapping(
 
 @kernel
 def find_first(
-    state: Block,
-    workspace: Block,
-    shapes: Shapes,
-    edges: Edges,
-    x: float,
-    y: float,
-    way_x: float,
-    way_y: float,
-    mask: int,
-) -> tuple[int, float, float, float]:
-    """Return (body, fraction, normal_x, normal_y) of the body that the last shape meets first.
+    state: Block, workspace: Block, shapes: Shapes, edges: Edges, rays: Rays, mask: int
+) -> None:
+    """Write into each ray which body the last shape meets first that moves along it, if any.
 
-    The shape moves from (x, y), fraction 0, by (way_x, way_y), fraction 1. The normal points to
-    the body, which is -1 if it meets none. Arguments are as for `find_overlapping`.
+    Of two bodies that are met at the same time it is the one with the lower index. Arguments are as
+    for `find_overlapping`.
     """
     world = open_world(state, state, workspace)
+    fit_shown(world)
+    unboxed = moving_of(world).shape[0] + boundless_of(world).shape[0] > 0
+    for index in range(rays.shape[0]):
+        ray = rays[index]
+        ray.body = -1
+        ray.fraction = math.inf
+        if unboxed:
+            _try_unboxed(world, shapes, edges, ray, mask)
+        waiting = begin_tree_walk(world)
+        while waiting > 0:
+            body, waiting = next_leaf(world, ray, waiting)
+            if body >= 0:
+                _try(world, shapes, edges, ray, mask, body)
+        if header_of(world).has_grid:
+            for level in range(grid_of(world).lowest, grid_of(world).highest + 1):
+                _try_level(world, shapes, edges, ray, mask, level)
+
+
+@kernel
+def _try_unboxed(world: WorldView, shapes: Shapes, edges: Edges, ray: RayRecord, mask: int) -> None:
+    """Let a ray meet the bodies that neither the tree nor the grid finds."""
+    boundless, moving, traits = boundless_of(world), moving_of(world), traits_of(world)
+    for index in range(boundless.shape[0]):
+        _try(world, shapes, edges, ray, mask, boundless[index])
+    has_grid = header_of(world).has_grid
+    for slot in range(moving.shape[0]):
+        if not traits[moving[slot]].boundless and not (has_grid and not is_astray(world, slot)):
+            _try(world, shapes, edges, ray, mask, moving[slot])
+
+
+@kernel
+def _try_level(
+    world: WorldView, shapes: Shapes, edges: Edges, ray: RayRecord, mask: int, level: int
+) -> None:
+    """Let a ray meet the moving bodies on a level of the grid."""
+    found, moving = found_of(world), moving_of(world)
+    strips = begin_level_walk(world, ray, level)
+    for strip in range(min(strips, 0), max(strips, 0)):
+        count, is_over = find_in_strip(world, ray, level, strip, found)
+        if is_over:
+            break
+        for index in range(count):
+            if not is_astray(world, found[index]):
+                _try(world, shapes, edges, ray, mask, moving[found[index]])
+
+
+@kernel
+def _try(
+    world: WorldView, shapes: Shapes, edges: Edges, ray: RayRecord, mask: int, body: int
+) -> None:
+    """Let a ray meet a body, if it does so before all others."""
+    trait = traits_of(world)[body]
+    if (trait.category & mask) == 0:
+        return
     own = shapes.shape[0] - 1
-    first, best, normal_x, normal_y = -1, math.inf, 0.0, 0.0
-    for body in range(traits_of(world).shape[0]):
-        trait = traits_of(world)[body]
-        if (trait.category & mask) == 0:
-            continue
-        their_x, their_y = _position(world, trait)
-        dx, dy = their_x - x, their_y - y
-        reach = min(best, 1.0)
-        if not may_touch(shapes, own, trait.collider, dx, dy, -way_x, -way_y, reach):
-            continue
-        margin_x, margin_y = touch_margins(
-            shapes, edges, own, trait.collider, x, y, their_x, their_y
-        )
-        time, out_x, out_y = impact_between(
-            shapes,
-            edges,
-            own,
-            trait.collider,
-            dx,
-            dy,
-            -way_x,
-            -way_y,
-            reach,
-            margin_x,
-            margin_y,
-        )
-        if time < best:
-            first, best, normal_x, normal_y = body, time, out_x, out_y
-    return first, best, normal_x, normal_y
+    x, y = _position(world, trait)
+    dx, dy = x - ray.x, y - ray.y
+    # With the whole way, not with what is left of it, so that the order of bodies has no influence.
+    if not may_touch(shapes, own, trait.collider, dx, dy, -ray.way_x, -ray.way_y, 1.0):
+        return
+    margin_x, margin_y = touch_margins(shapes, edges, own, trait.collider, ray.x, ray.y, x, y)
+    time, normal_x, normal_y = impact_between(
+        shapes,
+        edges,
+        own,
+        trait.collider,
+        dx,
+        dy,
+        -ray.way_x,
+        -ray.way_y,
+        1.0,
+        margin_x,
+        margin_y,
+    )
+    if time < ray.fraction or (time == ray.fraction and time < math.inf and body < ray.body):
+        ray.body, ray.fraction = body, time
+        ray.normal_x, ray.normal_y = normal_x, normal_y
