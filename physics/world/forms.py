@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -106,19 +105,20 @@ class Built:
         self.clock["capped"] = scene.capped
         self.clock["fresh"] = 1
         self.warned = scene.capped
-        self._tables: dict[Collider, tuple[Any, Any]] = {}
+        self._tables: dict[Collider, tuple[ByteArray, ByteArray]] = {}
         pairs = np.array(sorted((body, sensor) for sensor, body in scene.inside), np.int64)
         blocks = inside_blocks(
             [pairs.reshape(-1, 2)[:, ::-1]], len(scene.specs), len(self.setup.sensing) > 0
         )
         self.stepper = Stepper(self.setup, self.states, blocks)
 
-    def tables_with(self, shape: Collider) -> tuple[Any, Any]:
-        """Return (shapes, edges) of the world with one more shape at the end."""
+    def tables_with(self, shape: Collider) -> tuple[ByteArray, ByteArray]:
+        """Return (shapes, edges) of the world with one more shape at the end, uint8 [bytes]."""
         if shape not in self._tables:
             if len(self._tables) == MOST_TABLES:
                 self._tables.clear()
-            self._tables[shape] = with_query(self.setup, shape)
+            shapes, edges = with_query(self.setup, shape)
+            self._tables[shape] = shapes.view(np.uint8), edges.view(np.uint8)
         return self._tables[shape]
 
     @property

@@ -3,15 +3,16 @@
 import math
 
 from ..kernels import kernel
+from ..kernels.borrowed import borrowed
 from ..pairs.table import impact_between, may_touch, overlap_between
 from ..pairs.touching import touch_margins
-from ..shapes.records import Edges, Shapes
+from ..shapes.records import Edge, Edges, Shape, Shapes
 from .lookup.boxes import fit_shown, is_astray
 from .lookup.grid import find_in_grid
 from .lookup.neighbours import sort_items
 from .lookup.rays import begin_level_walk, begin_tree_walk, find_in_strip, next_leaf
 from .lookup.tree import find_leaves
-from .records import Block, Indices, RayRecord, Rays, TraitRecord
+from .records import Block, Indices, Ray, RayRecord, TraitRecord
 from .view import (
     WorldView,
     boundless_of,
@@ -19,6 +20,7 @@ from .view import (
     grid_of,
     header_of,
     moving_of,
+    near_of,
     open_world,
     shown_of,
     stack_of,
@@ -26,6 +28,8 @@ from .view import (
     static_tree_of,
     traits_of,
 )
+
+SHAPE_SIZE, EDGE_SIZE, RAY_SIZE = Shape.itemsize, Edge.itemsize, Ray.itemsize
 
 
 @kernel
@@ -57,8 +61,8 @@ def _write_unboxed(world: WorldView, found: Indices) -> int:
 def find_overlapping(
     state: Block,
     workspace: Block,
-    shapes: Shapes,
-    edges: Edges,
+    shape_block: Block,
+    edge_block: Block,
     x: float,
     y: float,
     mask: int,
@@ -68,12 +72,15 @@ def find_overlapping(
 
     Args:
         state, workspace: of the world.
-        shapes, edges: the world's shapes, and one more at the end.
+        shape_block, edge_block: the world's shapes, and one more at the end: uint8 [bytes], which
+            Python passes in half the time.
         x, y: position of the last shape.
         mask: the categories that count.
         found: int64 [bodies].
     """
     world = open_world(state, state, workspace)
+    shapes = borrowed(shape_block, 0, shape_block.shape[0] // SHAPE_SIZE, Shape)
+    edges = borrowed(edge_block, 0, edge_block.shape[0] // EDGE_SIZE, Edge)
     fit_shown(world)
     traits, moving = traits_of(world), moving_of(world)
     own = shapes.shape[0] - 1
@@ -112,22 +119,31 @@ def find_overlapping(
 
 @kernel
 def find_first(
-    state: Block, workspace: Block, shapes: Shapes, edges: Edges, rays: Rays, mask: int
+    state: Block,
+    workspace: Block,
+    shape_block: Block,
+    edge_block: Block,
+    ray_block: Block,
+    mask: int,
 ) -> None:
     """Write into each ray which body the last shape meets first that moves along it, if any.
 
     Of two bodies that are met at the same time it is the one with the lower index. Arguments are as
-    for `find_overlapping`.
+    for `find_overlapping`, and ``ray_block`` holds the `Ray` records, uint8 [bytes].
     """
     world = open_world(state, state, workspace)
+    shapes = borrowed(shape_block, 0, shape_block.shape[0] // SHAPE_SIZE, Shape)
+    edges = borrowed(edge_block, 0, edge_block.shape[0] // EDGE_SIZE, Edge)
+    rays = borrowed(ray_block, 0, ray_block.shape[0] // RAY_SIZE, Ray)
     fit_shown(world)
-    unboxed = moving_of(world).shape[0] + boundless_of(world).shape[0] > 0
+    unboxed = near_of(world)
+    count = _write_unboxed(world, unboxed)
     for index in range(rays.shape[0]):
         ray = rays[index]
         ray.body = -1
         ray.fraction = math.inf
-        if unboxed:
-            _try_unboxed(world, shapes, edges, ray, mask)
+        for number in range(count):
+            _try(world, shapes, edges, ray, mask, unboxed[number])
         waiting = begin_tree_walk(world)
         while waiting > 0:
             body, waiting = next_leaf(world, ray, waiting)
@@ -136,18 +152,6 @@ def find_first(
         if header_of(world).has_grid:
             for level in range(grid_of(world).lowest, grid_of(world).highest + 1):
                 _try_level(world, shapes, edges, ray, mask, level)
-
-
-@kernel
-def _try_unboxed(world: WorldView, shapes: Shapes, edges: Edges, ray: RayRecord, mask: int) -> None:
-    """Let a ray meet the bodies that neither the tree nor the grid finds."""
-    boundless, moving, traits = boundless_of(world), moving_of(world), traits_of(world)
-    for index in range(boundless.shape[0]):
-        _try(world, shapes, edges, ray, mask, boundless[index])
-    has_grid = header_of(world).has_grid
-    for slot in range(moving.shape[0]):
-        if not traits[moving[slot]].boundless and not (has_grid and not is_astray(world, slot)):
-            _try(world, shapes, edges, ray, mask, moving[slot])
 
 
 @kernel

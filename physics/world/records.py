@@ -316,7 +316,6 @@ BoxRecord: TypeAlias = Any  # one `Box`
 Boxes: TypeAlias = Any  # `Box` [n]
 GridRecord: TypeAlias = Any  # one `Grid`
 RayRecord: TypeAlias = Any  # one `Ray`
-Rays: TypeAlias = Any  # `Ray` [n]
 Nodes: TypeAlias = Any  # `Node` [n]
 TreeRecord: TypeAlias = Any  # one `Tree`
 InsideRecord: TypeAlias = Any  # one `Inside`

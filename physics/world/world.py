@@ -342,7 +342,7 @@ class World:
             built.states[0],
             built.stepper.workspace,
             *built.tables_with(shape),
-            rays,
+            rays.view(np.uint8),
             _bits("mask", mask),
         )
 
