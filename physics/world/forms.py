@@ -7,10 +7,13 @@ import numpy as np
 
 from ..body import Body, FloatArray
 from ..errors import InseparableError
+from ..shapes.colliders import Collider
 from .lookup.inside import inside_blocks, pairs_inside
 from .records import Clock, Motion, Plan
-from .setup import BodySpec, ByteArray, build_setup, inseparable_pair
+from .setup import BodySpec, ByteArray, build_setup, inseparable_pair, with_query
 from .states import Stepper
+
+MOST_TABLES = 16  # of shapes that queries ask about, kept for the next query
 
 
 @dataclass
@@ -102,11 +105,21 @@ class Built:
         self.clock["capped"] = scene.capped
         self.clock["fresh"] = 1
         self.warned = scene.capped
+        self._tables: dict[Collider, tuple[ByteArray, ByteArray]] = {}
         pairs = np.array(sorted((body, sensor) for sensor, body in scene.inside), np.int64)
         blocks = inside_blocks(
             [pairs.reshape(-1, 2)[:, ::-1]], len(scene.specs), len(self.setup.sensing) > 0
         )
         self.stepper = Stepper(self.setup, self.states, blocks)
+
+    def tables_with(self, shape: Collider) -> tuple[ByteArray, ByteArray]:
+        """Return (shapes, edges) of the world with one more shape at the end, uint8 [bytes]."""
+        if shape not in self._tables:
+            if len(self._tables) == MOST_TABLES:
+                self._tables.clear()
+            shapes, edges = with_query(self.setup, shape)
+            self._tables[shape] = shapes.view(np.uint8), edges.view(np.uint8)
+        return self._tables[shape]
 
     @property
     def capped(self) -> int:

@@ -132,6 +132,7 @@ Plan = record_dtype(
         ("time_low", np.float64),
         ("at", np.float64),  # when the body was where its motion says
         ("at_low", np.float64),
+        ("hits", np.int64),  # in this step; from 0 again at each later stage
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
         ("pair", np.int64),  # the two bodies as one number, whichever of them plans
@@ -140,7 +141,6 @@ Plan = record_dtype(
         ("slack", np.float64),  # what rounding may add to the time until it meets its partner
         ("tied", np.int64),  # 1: it meets another body at the same time
         ("speed", np.float64),  # |vx| + |vy|, the most since a user last wrote it
-        ("hits", np.int64),  # in this step; from 0 again at each later stage
         ("rests", np.int64),  # how often it has come to rest since it went some way
         ("instant", np.int64),  # hits at the time of its last one
         ("stage", np.int64),  # FREE, INERT, CRUSHED or HELD
@@ -157,26 +157,33 @@ Plan = record_dtype(
         ("near", np.int64),  # bodies that it may meet there; -1: too many for its list
         ("fixed", np.int64),  # of these, how many are not found by the grid
         ("is_linked", np.int64),
-        ("level", np.int64),  # of the grid
-        ("column", np.int64),
-        ("row", np.int64),
-        ("next", np.int64),  # slots of the neighbours in the list of its cell, or -1
-        ("previous", np.int64),
+        ("previous", np.int64),  # the slot before it in the list of its cell, or -1
     ]
 )
 
-# Where a body may be before it leaves its box, with the body's extent.
+# Where a body may be before it leaves its box, with the body's extent; and its place in the grid.
+# 64 bytes, as a processor reads them.
 Box = record_dtype(
     [
         ("lower_x", np.float64),
         ("lower_y", np.float64),
         ("upper_x", np.float64),
         ("upper_y", np.float64),
+        ("level", np.int64),
+        ("column", np.int64),
+        ("row", np.int64),
+        ("next", np.int64),  # the next slot in the list of its cell, or -1
     ]
 )
 
-# The first and the last level of the grid that has bodies.
-Grid = record_dtype([("lowest", np.int64), ("highest", np.int64)])
+# The grid: the first and the last level that has bodies.
+Grid = record_dtype(
+    [
+        ("lowest", np.int64),
+        ("highest", np.int64),
+        ("ready", np.int64),  # 1: every body has a box
+    ]
+)
 
 # A node of a tree of boxes, see `lookup.tree`: 64 bytes, as a processor reads them.
 Node = record_dtype(
@@ -202,6 +209,21 @@ Pair = record_dtype(
         ("sensor", np.int64),  # -1: unused
         ("body", np.int64),
         ("next", np.int64),  # in the body's list; of an unused pair, the next one of these
+    ]
+)
+
+# A ray, or the way of a shape, and what it meets first.
+Ray = record_dtype(
+    [
+        ("x", np.float64),  # its start
+        ("y", np.float64),
+        ("way_x", np.float64),  # to its end
+        ("way_y", np.float64),
+        ("room", np.float64),  # how far beside it bodies are met
+        ("body", np.int64),  # -1: none
+        ("fraction", np.float64),  # of the way
+        ("normal_x", np.float64),  # to the body
+        ("normal_y", np.float64),
     ]
 )
 
@@ -294,6 +316,7 @@ HeaderRecord: TypeAlias = Any  # one `Header`
 BoxRecord: TypeAlias = Any  # one `Box`
 Boxes: TypeAlias = Any  # `Box` [n]
 GridRecord: TypeAlias = Any  # one `Grid`
+RayRecord: TypeAlias = Any  # one `Ray`
 Nodes: TypeAlias = Any  # `Node` [n]
 TreeRecord: TypeAlias = Any  # one `Tree`
 InsideRecord: TypeAlias = Any  # one `Inside`

@@ -10,7 +10,7 @@ from ..kernels.borrowed import BYTE
 from ..kernels.portable.addresses import array_at
 from ..tolerances import MOST_RESTS
 from .clock_time import later
-from .courses import motion_at, move_to
+from .courses import move_to, place_at
 from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import run_events
 from .lookup.boxes import first_margin, fit_all, fit_here
@@ -267,11 +267,13 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
     if progress.full:
         return count
     end, end_low = progress.end, progress.end_low
-    motions, plans, moving = motions_of(world), plans_of(world), moving_of(world)
+    motions, plans = motions_of(world), plans_of(world)
     shown, after_step = shown_of(world), shown_after_step_of(world)
+    total = 0.0
     for slot in range(header.movers):
         motion, plan, seen, after = motions[slot], plans[slot], shown[slot], after_step[slot]
-        x, y, vx, vy = motion_at(world, moving[slot], end, end_low)
+        vx, vy = motion.vx, motion.vy
+        x, y = place_at(motion, plan, end, end_low)
         if not header.continuous:
             motion.x, motion.y = x, y
             plan.at, plan.at_low = end, end_low
@@ -283,8 +285,9 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         plan.stage = FREE
         seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
         after.x, after.y, after.vx, after.vy = x, y, vx, vy
+        total += abs(x) + abs(y) + abs(vx) + abs(vy)
     clock.time, clock.time_low = end, end_low
-    if not _are_finite(shown):
+    if not total < math.inf and not _are_finite(shown):
         clock.planned = 0
         return INVALID
     return count

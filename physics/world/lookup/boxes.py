@@ -16,12 +16,14 @@ from ..records import Block, PlanRecord
 from ..view import (
     WorldView,
     clock_of,
+    grid_of,
     header_of,
     motions_of,
     moving_of,
     open_world,
     plans_of,
     shapes_of,
+    shown_of,
     static_nodes_of,
     static_tree_of,
     traits_of,
@@ -32,13 +34,16 @@ from .neighbours import TOO_MANY
 from .tree import NO_ONE, clear_tree, insert_leaf
 
 # The margin, in units of the body's size and of the median of all sizes.
-OWN_SHARE = 1.497
-TYPICAL_SHARE = 1.763
-# A body that may meet more than so many others gets a smaller margin, down to this share of the
-# first one; with fewer, a larger one again.
+OWN_SHARE = 1.1
+TYPICAL_SHARE = 1.2
+# A body that may meet more than so many others gets a smaller margin, with fewer a larger one,
+# between these shares of the first one.
 CROWDED = 12
 LONELY = 6
 LEAST_SHARE = 0.1
+MOST_SHARE = 8.0
+# A box is ahead of the body by this share of the margin, so that the body is in it for longer.
+AHEAD = 0.75
 # It is at least this fraction of the coordinates: far from the origin, smaller steps are rounding.
 # A box is larger than the body and the margin by this fraction of all that made it: more than
 # `TOUCH`, so that the boxes of bodies that touch overlap.
@@ -80,7 +85,7 @@ def next_margin(world: WorldView, slot: int) -> float:
         margin *= 0.75
     elif plan.near < LONELY:
         margin *= 1.25
-    return max(LEAST_SHARE * first, min(first, margin))
+    return max(LEAST_SHARE * first, min(MOST_SHARE * first, margin))
 
 
 @kernel
@@ -101,10 +106,14 @@ def _is_crowded(plan: PlanRecord) -> bool:
 
 @kernel
 def fit(world: WorldView, slot: int, x: float, y: float, margin: float) -> None:
-    """Put a body's box about the place (x, y), where it is now."""
-    plan = plans_of(world)[slot]
+    """Put a body's box about the place (x, y), where it is now, or rather ahead of it."""
+    plan, motion = plans_of(world)[slot], motions_of(world)[slot]
     shape = shapes_of(world)[traits_of(world)[moving_of(world)[slot]].collider]
     margin = max(margin, FAR * (abs(x) + abs(y)))
+    fastest = max(abs(motion.vx), abs(motion.vy))
+    if 0.0 < fastest < math.inf and margin < math.inf:
+        x += AHEAD * margin * (motion.vx / fastest)
+        y += AHEAD * margin * (motion.vy / fastest)
     plan.margin = margin
     plan.middle_x, plan.middle_y = x, y
     plan.fitted = clock_of(world).time
@@ -138,6 +147,35 @@ def fit_all(world: WorldView, now: float, now_low: float) -> None:
         plans[slot].near = TOO_MANY
     for slot in range(plans.shape[0]):
         fit_here(world, slot, now, now_low, first_margin(world, slot))
+    grid_of(world).ready = 1
+
+
+@kernel
+def is_astray(world: WorldView, slot: int) -> bool:
+    """Return whether a user has put a body out of its box since the last step."""
+    plan, seen = plans_of(world)[slot], shown_of(world)[slot]
+    return not (
+        abs(seen.x - plan.middle_x) <= plan.margin and abs(seen.y - plan.middle_y) <= plan.margin
+    )
+
+
+@kernel
+def fit_shown(world: WorldView) -> None:
+    """Prepare all boxes for queries: only bodies that users have moved since may be astray.
+
+    If the next step makes all boxes anyway, none is. Else a plan may depend on where a box is.
+    """
+    clock = clock_of(world)
+    if not header_of(world).has_grid:
+        return
+    if grid_of(world).ready == 0:
+        fit_all(world, clock.time, clock.time_low)
+    if clock.planned:
+        return
+    shown = shown_of(world)
+    for slot in range(shown.shape[0]):
+        if is_astray(world, slot):
+            fit(world, slot, shown[slot].x, shown[slot].y, first_margin(world, slot))
 
 
 @kernel

@@ -27,11 +27,12 @@ MIDDLE_LEVEL = 24  # with the cells that suit typical bodies
 # A cell is larger than a box by this fraction, because of rounding. No number of a cell is larger
 # than 1e9, see `boxes.FAR`.
 SPARE = 1e-6
+FARTHEST = 1e12
 _BITS = (1 << 26) - 1
 
 
 @kernel
-def _cell_size(world: WorldView, level: int) -> float:
+def cell_size(world: WorldView, level: int) -> float:
     """Return the size of a level's cells; the last level has a single one."""
     if level == LEVELS - 1:
         return math.inf
@@ -44,13 +45,16 @@ def _cell_size(world: WorldView, level: int) -> float:
 
 
 @kernel
-def _number(position: float, size: float) -> int:
+def number_of(position: float, size: float) -> int:
     """Return the column or row of a position."""
-    return math.floor(position / size) if size < math.inf else 0
+    if size == math.inf:
+        return 0
+    # No body is so far away, but a query may be.
+    return math.floor(max(-FARTHEST, min(FARTHEST, position / size)))
 
 
 @kernel
-def _bucket(level: int, column: int, row: int, buckets: int) -> int:
+def bucket_of(level: int, column: int, row: int, buckets: int) -> int:
     """Return the place of a cell in the table, whose length is a power of two."""
     # Only some bits of the numbers: so nothing overflows.
     mixed = level * 83492791 + (column & _BITS) * 73856093 + (row & _BITS) * 19349663
@@ -82,12 +86,12 @@ def enter_grid(world: WorldView, slot: int) -> None:
     while level < LEVELS - 1 and not size >= width:
         level += 1
         size = size * 2.0 if level < LEVELS - 1 else math.inf
-    plan.level = level
-    plan.column = _number(0.5 * box.lower_x + 0.5 * box.upper_x, size)
-    plan.row = _number(0.5 * box.lower_y + 0.5 * box.upper_y, size)
-    bucket = _bucket(level, plan.column, plan.row, heads.shape[0])
+    box.level = level
+    box.column = number_of(0.5 * box.lower_x + 0.5 * box.upper_x, size)
+    box.row = number_of(0.5 * box.lower_y + 0.5 * box.upper_y, size)
+    bucket = bucket_of(level, box.column, box.row, heads.shape[0])
     first = heads[bucket]
-    plan.next = first
+    box.next = first
     plan.previous = NO_ONE
     if first != NO_ONE:
         plans_of(world)[first].previous = slot
@@ -100,16 +104,16 @@ def enter_grid(world: WorldView, slot: int) -> None:
 @kernel
 def leave_grid(world: WorldView, slot: int) -> None:
     """Take a body out of its cell."""
-    plans, heads = plans_of(world), heads_of(world)
-    plan = plans[slot]
-    if plan.next != NO_ONE:
-        plans[plan.next].previous = plan.previous
-    if plan.previous != NO_ONE:
-        plans[plan.previous].next = plan.next
+    plans, boxes, heads = plans_of(world), boxes_of(world), heads_of(world)
+    previous, box = plans[slot].previous, boxes[slot]
+    if box.next != NO_ONE:
+        plans[box.next].previous = previous
+    if previous != NO_ONE:
+        boxes[previous].next = box.next
     else:
-        heads[_bucket(plan.level, plan.column, plan.row, heads.shape[0])] = plan.next
+        heads[bucket_of(box.level, box.column, box.row, heads.shape[0])] = box.next
     grid, counts = grid_of(world), level_counts_of(world)
-    counts[plan.level] -= 1
+    counts[box.level] -= 1
     while grid.highest >= 0 and counts[grid.highest] == 0:
         grid.highest -= 1
     while grid.lowest < LEVELS and counts[grid.lowest] == 0:
@@ -117,43 +121,66 @@ def leave_grid(world: WorldView, slot: int) -> None:
 
 
 @kernel
-def find_in_grid(world: WorldView, box: BoxRecord, found: Indices, count: int) -> int:
+def find_in_grid(
+    world: WorldView,
+    lower_x: float,
+    lower_y: float,
+    upper_x: float,
+    upper_y: float,
+    found: Indices,
+    count: int,
+) -> int:
     """Append the slots of bodies whose boxes touch or overlap one; return how many there are."""
     grid, counts = grid_of(world), level_counts_of(world)
     for level in range(grid.lowest, grid.highest + 1):
         if counts[level] > 0:
-            count = _find_on_level(world, box, level, found, count)
+            count = _find_on_level(world, level, lower_x, lower_y, upper_x, upper_y, found, count)
     return count
 
 
 @kernel
-def _find_on_level(world: WorldView, box: BoxRecord, level: int, found: Indices, count: int) -> int:
+def _find_on_level(
+    world: WorldView,
+    level: int,
+    lower_x: float,
+    lower_y: float,
+    upper_x: float,
+    upper_y: float,
+    found: Indices,
+    count: int,
+) -> int:
     """Do the same for the bodies on one level."""
     plans, boxes, heads = plans_of(world), boxes_of(world), heads_of(world)
-    size = _cell_size(world, level)
+    size = cell_size(world, level)
     # The middle of a box that touches this one is at most half a cell away from it.
-    columns = (box.upper_x - box.lower_x) / size + 2.0
-    rows = (box.upper_y - box.lower_y) / size + 2.0
+    columns = (upper_x - lower_x) / size + 2.0
+    rows = (upper_y - lower_y) / size + 2.0
     if not columns * rows <= max(16.0, plans.shape[0]):
         # A box so large that there are fewer bodies than cells.
         for slot in range(plans.shape[0]):
-            if plans[slot].is_linked and plans[slot].level == level:
+            if plans[slot].is_linked and boxes[slot].level == level:
                 found[count] = slot
-                count += touch(boxes[slot], box.lower_x, box.lower_y, box.upper_x, box.upper_y)
+                count += touch(boxes[slot], lower_x, lower_y, upper_x, upper_y)
         return count
-    left = _number(box.lower_x - 0.5 * size, size)
-    right = _number(box.upper_x + 0.5 * size, size)
-    low = _number(box.lower_y - 0.5 * size, size)
-    high = _number(box.upper_y + 0.5 * size, size)
+    left = number_of(lower_x - 0.5 * size, size)
+    right = number_of(upper_x + 0.5 * size, size)
+    low = number_of(lower_y - 0.5 * size, size)
+    high = number_of(upper_y + 0.5 * size, size)
     for column in range(left, right + 1):
         for row in range(low, high + 1):
-            slot = heads[_bucket(level, column, row, heads.shape[0])]
+            slot = heads[bucket_of(level, column, row, heads.shape[0])]
             while slot != NO_ONE:
-                plan = plans[slot]
-                if plan.column == column and plan.row == row and plan.level == level:
+                box = boxes[slot]
+                # Several cells may share a bucket.
+                if (
+                    touch(box, lower_x, lower_y, upper_x, upper_y)
+                    and box.column == column
+                    and box.row == row
+                    and box.level == level
+                ):
                     found[count] = slot
-                    count += touch(boxes[slot], box.lower_x, box.lower_y, box.upper_x, box.upper_y)
-                slot = plan.next
+                    count += 1
+                slot = box.next
     return count
 
 

@@ -83,13 +83,22 @@ def _link(
     )
     body = moving[slot]
     trait = traits[body]
-    for index in range(find_in_grid(world, boxes[slot], found, 0)):
+    for index in range(_around(world, slot)):
         other = found[index]
         if not interacts(trait, traits[moving[other]]):
             continue
         _append(world, slot, moving[other])
         if not (was_linked and touch(boxes[other], lower_x, lower_y, upper_x, upper_y)):
             _append(world, other, body)
+
+
+@kernel
+def _around(world: WorldView, slot: int) -> int:
+    """Write the slots into ``found`` whose boxes touch a body's; return how many."""
+    box = boxes_of(world)[slot]
+    return find_in_grid(
+        world, box.lower_x, box.lower_y, box.upper_x, box.upper_y, found_of(world), 0
+    )
 
 
 @kernel
@@ -119,7 +128,7 @@ def _unlink(
             if not touch(boxes[other], lower_x, lower_y, upper_x, upper_y):
                 _take(world, other, body)
         return
-    for index in range(find_in_grid(world, boxes[slot], found, 0)):
+    for index in range(_around(world, slot)):
         other = found[index]
         if other != slot and not touch(boxes[other], lower_x, lower_y, upper_x, upper_y):
             _take(world, other, body)

@@ -82,8 +82,9 @@ def _look_up(world: WorldView, slot: int, only_later: bool) -> int:
             count += theirs < 0 or theirs >= least
     if not header_of(world).has_grid or trait.boundless:
         return _append_moving(world, slot, least, count)
-    first = count
-    for index in range(first, find_in_grid(world, boxes_of(world)[slot], near, count)):
+    first, box = count, boxes_of(world)[slot]
+    found = find_in_grid(world, box.lower_x, box.lower_y, box.upper_x, box.upper_y, near, count)
+    for index in range(first, found):
         other = near[index]
         if other >= least and other != slot:
             near[count] = moving[other]
@@ -127,8 +128,19 @@ def find_fixed(world: WorldView, slot: int, found: Indices) -> int:
             count += interacts(trait, traits[boundless[index]])
     if header_of(world).static_nodes > 0:
         first = count
-        tree, nodes, box = static_tree_of(world), static_nodes_of(world), boxes_of(world)[slot]
-        for index in range(first, find_leaves(tree, nodes, box, stack_of(world), found, count)):
+        box = boxes_of(world)[slot]
+        last = find_leaves(
+            static_tree_of(world),
+            static_nodes_of(world),
+            box.lower_x,
+            box.lower_y,
+            box.upper_x,
+            box.upper_y,
+            stack_of(world),
+            found,
+            count,
+        )
+        for index in range(first, last):
             found[count] = found[index]
             count += interacts(trait, traits[found[count]])
     sort_items(found, count)

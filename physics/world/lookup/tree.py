@@ -11,7 +11,7 @@ inner nodes, of which the unused ones are a list.
 """
 
 from ...kernels import kernel
-from ..records import BoxRecord, Indices, Nodes, TreeRecord
+from ..records import Indices, Nodes, TreeRecord
 
 NO_ONE = -1
 
@@ -67,18 +67,25 @@ def remove_leaf(tree: TreeRecord, nodes: Nodes, leaf: int) -> None:
 
 @kernel
 def find_leaves(
-    tree: TreeRecord, nodes: Nodes, box: BoxRecord, stack: Indices, found: Indices, count: int
+    tree: TreeRecord,
+    nodes: Nodes,
+    lower_x: float,
+    lower_y: float,
+    upper_x: float,
+    upper_y: float,
+    stack: Indices,
+    found: Indices,
+    count: int,
 ) -> int:
     """Append the leaves whose boxes touch or overlap one; return how many there are.
 
     Args:
         tree, nodes: the tree.
-        box: see above.
+        lower_x, lower_y, upper_x, upper_y: the sides of the box.
         stack: int64 [STACK], scratch memory.
         found: int64, of which ``count`` items are there already.
         count: see above.
     """
-    lower_x, lower_y, upper_x, upper_y = box.lower_x, box.lower_y, box.upper_x, box.upper_y
     waiting = 0
     if tree.root != NO_ONE:
         stack[0] = tree.root

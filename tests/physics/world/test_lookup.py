@@ -4,12 +4,14 @@ import math
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World
+from arkanoid.physics.world.lookup.neighbours import TOO_MANY
 from arkanoid.physics.world.lookup.overrides import find_override, override_table
 from arkanoid.physics.world.lookup.tree import clear_tree, find_leaves, insert_leaf, remove_leaf
 from arkanoid.physics.world.records import Box, Node, Plan, Tree
-from arkanoid.physics.world.view import STACK
+from arkanoid.physics.world.view import LINKS, STACK
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -37,6 +39,16 @@ def plans_of(world: World) -> Any:
     return built.setup.records(built.states, "plans", Plan)[0]
 
 
+def touching(world: World) -> npt.NDArray[np.bool_]:
+    """Return whose boxes touch or overlap, bool [movers, movers]; no body touches itself."""
+    built = world.built()
+    boxes = built.setup.records(built.states, "boxes", Box)[0]
+    lower = np.stack([boxes["lower_x"], boxes["lower_y"]], axis=1)
+    upper = np.stack([boxes["upper_x"], boxes["upper_y"]], axis=1)
+    both = ((lower[:, None] <= upper) & (lower <= upper[:, None])).all(axis=2)
+    return np.asarray(both & ~np.eye(len(boxes), dtype=bool))
+
+
 # The tree.
 
 
@@ -62,11 +74,10 @@ def test_the_tree_finds_what_brute_force_finds(seed: int, kind: str) -> None:
                 nodes[leaf][name] = value
             insert_leaf(tree, nodes, leaf)
             inside.add(leaf)
-        box, found = np.zeros(1, Box)[0], np.zeros(count, np.int64)
+        found = np.zeros(count, np.int64)
         low = rng.normal(size=2) * 5
-        for name, value in zip(SIDES, (*low, *(low + 2)), strict=True):
-            box[name] = value
-        number = find_leaves(tree, nodes, box, stack, found, 0)
+        box = dict(zip(SIDES, (*low, *(low + 2)), strict=True))
+        number = find_leaves(tree, nodes, *box.values(), stack, found, 0)
         expected = {
             leaf
             for leaf in inside
@@ -96,8 +107,29 @@ def test_a_crowd_is_followed_wherever_it_goes(radii: tuple[float, ...], place: f
     for _ in range(3):
         world.step(40.0)
         small = np.array([body.collider.rounding == min(radii) for body in bodies])
-        near = plans_of(world)["near"]
-        assert near[small].mean() < 60
+        assert touching(world)[small].sum(axis=1).mean() < 60
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([(0.5,), (0.5, 0.1), (2.0, *[0.1] * 20)]))
+def test_lists_hold_the_bodies_whose_boxes_touch(seed: int, radii: tuple[float, ...]) -> None:
+    """They are kept up to date while boxes change, bodies are placed, and lists are too long."""
+    rng = np.random.default_rng(seed)
+    world = World(crowd(60, radii))
+    world.add(Body(AxisAlignedRectangle(3, 3), (-4, -4)))
+    for _ in range(12):
+        for body in rng.choice(60, 3).tolist():
+            world.place(body, rng.uniform(-2, 12, 2), rng.normal(size=2))
+        world.step(float(rng.choice([0.0, 0.1, 1.0])))
+        built = world.built()
+        links = built.setup.records(built.states, "links", np.dtype([("bodies", np.int64, LINKS)]))[
+            0
+        ]
+        due = touching(world)
+        for slot, plan in enumerate(plans_of(world)):
+            if plan["near"] != TOO_MANY:
+                listed = links["bodies"][slot, plan["fixed"] : plan["near"]].tolist()
+                assert sorted(listed) == np.flatnonzero(due[slot]).tolist()
 
 
 def test_a_written_velocity_makes_few_plans_anew() -> None:
@@ -105,16 +137,17 @@ def test_a_written_velocity_makes_few_plans_anew() -> None:
     world = World(crowd(900, (0.5,), speed=0.1))
     world.step(0.5)
     plans = plans_of(world)
-    plans["near"] = -1
+    mark = 1e-200  # of a second: it decides nothing, and a new plan does not have it
+    plans["time_low"] = mark
     world.step(0.0)
-    assert (plans["near"] == -1).all()
+    assert (plans["time_low"] == mark).all()
     world.place(450, velocity=(0.3, 0.2))
     world.step(0.0)
-    assert 1 <= (plans["near"] >= 0).sum() <= 12
-    plans["near"] = -1
+    assert 1 <= (plans["time_low"] != mark).sum() <= 12
+    plans["time_low"] = mark
     world.place(3, position=world.positions[3] + 0.001)
     world.step(0.0)
-    assert 1 <= (plans["near"] >= 0).sum() <= 12
+    assert 1 <= (plans["time_low"] != mark).sum() <= 12
 
 
 @pytest.mark.parametrize("speed", [1e3, 1e9, 1e100, 1e300])
