@@ -9,7 +9,7 @@ import math
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
 from ..shapes.records import Edges, ShapeRecord
-from ..tolerances import MOST_RESTS, NO_APPROACH, PARALLEL, SAME_POINT, SAME_TIME, SLIDE
+from ..tolerances import MOST_RESTS, NO_APPROACH, NO_WAY, PARALLEL, SAME_POINT, SAME_TIME, SLIDE
 from .clock_time import elapsed, later
 from .grid import find_near, time_to_cross
 from .records import (
@@ -89,17 +89,26 @@ def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
         way = abs(x - motion.x) + abs(y - motion.y)
         if way > SAME_TIME * (abs(x) + abs(y)):
             plan.instant = 0
-        if 2.0 * way > _short_way(world, body):
+        size = _size_of(world, body)
+        if 2.0 * way > SLIDE * size:
             plan.rests = 0
+        plan.nowhere = not way > NO_WAY * size
         motion.x, motion.y = x, y
         plan.at, plan.at_low = now, now_low
 
 
 @kernel
-def _short_way(world: WorldView, body: int) -> float:
-    """Return how far a body may slide before it looks again what it slides into."""
+def _size_of(world: WorldView, body: int) -> float:
+    """Return the width or the height of a body, whichever is less."""
     shape = shapes_of(world)[traits_of(world)[body].collider]
-    return float(SLIDE * min(shape.upper_x - shape.lower_x, shape.upper_y - shape.lower_y))
+    return float(min(shape.upper_x - shape.lower_x, shape.upper_y - shape.lower_y))
+
+
+@kernel
+def is_short_way(world: WorldView, body: int) -> bool:
+    """Return whether a body went next to nowhere when it was moved last, or has no mass."""
+    trait = traits_of(world)[body]
+    return bool(trait.inverse_mass == 0.0 or plans_of(world)[trait.slot].nowhere)
 
 
 @kernel
@@ -169,14 +178,29 @@ def passes_by(
             return True
     shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
     one, other = shapes[traits[a].collider], shapes[traits[b].collider]
-    radius, square = one.radius + other.radius, ux * ux + uy * uy
-    if radius == 0.0 or closing * closing * radius > 2.0 * SAME_TIME * reach * square:
+    radius = one.radius + other.radius
+    # In units of the speed, because its square may overflow.
+    largest = max(abs(ux), abs(uy))
+    sine, x, y = closing / largest, ux / largest, uy / largest
+    if radius == 0.0 or sine * sine * radius > 2.0 * SAME_TIME * reach * (x * x + y * y):
         return False
     # A corner is round, too, but a face is not.
     return bool(
         skewness(one, edges, normal_x, normal_y) > PARALLEL
         and skewness(other, edges, normal_x, normal_y) > PARALLEL
     )
+
+
+@kernel
+def _are_held(world: WorldView, a: int, b: int) -> bool:
+    """Return whether two bodies that are no sensors have lost their masses in this step.
+
+    So every meeting has a body that it brings closer to being held.
+    """
+    if not progress_of(world).inert or not has_reached(world, a, b, HELD):
+        return False
+    traits = traits_of(world)
+    return bool(traits[a].sensor < 0 and traits[b].sensor < 0)
 
 
 @kernel
@@ -252,7 +276,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
         latest = best + max(slack, plan.slack)
         if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, latest):
             continue
-        if is_inside(world, own, body, trait, other):
+        if is_inside(world, own, body, trait, other) or _are_held(world, body, other):
             continue
         time, normal_x, normal_y = impact_between(
             shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, latest
@@ -313,7 +337,7 @@ def _look_again(world: WorldView, plan: PlanRecord, body: int, speed: float, bes
         speed: its speed, |vx| + |vy|.
         best: in how long its first event is so far.
     """
-    way = _short_way(world, body)
+    way = SLIDE * _size_of(world, body)
     if speed > 0.0 and way < best * speed:
         plan.kind = LOOK
         return way / speed

@@ -220,7 +220,7 @@ def _is_possible_plan(world: WorldView, plan: PlanRecord, slot: int) -> bool:
     header, clock = header_of(world), clock_of(world)
     if plan.at != clock.time or plan.at_low != clock.time_low or plan.hits != 0:
         return False
-    if plan.rests != 0 or plan.instant != 0 or plan.stage != FREE:
+    if plan.rests != 0 or plan.instant != 0 or plan.nowhere != 0 or plan.stage != FREE:
         return False
     if plan.tied not in (0, 1) or not plan.slack >= 0.0:
         return False

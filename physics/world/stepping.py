@@ -90,6 +90,7 @@ def begin_step(world: WorldView, dt: float) -> bool:
     if not abs(progress.end) < math.inf:
         return False
     progress.crowded = 0
+    progress.hits = 0
     progress.inert = 0
     if clock.planned and _are_equal(motions_of(world), motions_after_step_of(world)):
         return True
@@ -146,7 +147,7 @@ def _clear_plans(world: WorldView) -> None:
         plan.at = clock.time
         plan.at_low = clock.time_low
         plan.speed = abs(motions_of(world)[slot].vx) + abs(motions_of(world)[slot].vy)
-        plan.hits = plan.rests = plan.instant = 0
+        plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE
         plan.time = math.inf
         plan.time_low = 0.0
@@ -197,7 +198,7 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         motion.x += motion.vx * since
         motion.y += motion.vy * since
         plan.at, plan.at_low = end, end_low
-        plan.hits = plan.rests = plan.instant = 0
+        plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE
         after.x, after.y, after.vx, after.vy = motion.x, motion.y, motion.vx, motion.vy
     if not _are_finite(motions):

@@ -80,8 +80,10 @@ def _join_planned(world: WorldView, slot: int, now: float, now_low: float) -> No
     plan = plans_of(world)[slot]
     a, b = moving_of(world)[slot], plan.partner
     normal_x, normal_y = plan.normal_x, plan.normal_y
-    # It needs a new plan, also if this turns out to be no hit.
+    # They need new plans, also if this turns out to be no hit.
     add_member(world, slot)
+    if traits_of(world)[b].slot >= 0:
+        add_member(world, traits_of(world)[b].slot)
     if traits_of(world)[a].inverse_mass == 0.0:
         a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     if not are_joined(world, a, b):

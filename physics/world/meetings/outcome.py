@@ -3,8 +3,8 @@
 from ...kernels import kernel
 from ...tolerances import NO_APPROACH, RESOLVED, ROUGHLY
 from ..events import contact_point, leave_sensors, write_event
-from ..prediction import find_stale, move_to, predict, slowest_hit
-from ..records import CRUSHED, HIT, NOTHING, Hits
+from ..prediction import find_stale, is_short_way, move_to, predict, slowest_hit
+from ..records import CRUSHED, HELD, HIT, NOTHING, Hits
 from ..view import (
     WorldView,
     header_of,
@@ -17,7 +17,10 @@ from ..view import (
 from .changes import count_hit, count_rest, predict_stale, reach_stage
 from .gathering import gather_due, join_neighbours
 from .pair import set_velocity
-from .solver import group_speed, lacking, resolve
+from .solver import group_speed, inverse_masses, lacking, resolve
+
+# A group begins with the body whose meeting is due and, if it moves, its partner.
+FIRST_TWO = 2
 
 
 @kernel
@@ -100,7 +103,7 @@ def _move_on(
                 touch.normal_y,
                 x,
                 y,
-                -touch.change / _inverse_masses(world, touch.one, touch.other),
+                -touch.change / inverse_masses(world, touch),
             )
     return count
 
@@ -129,15 +132,6 @@ def _add_up(world: WorldView) -> None:
 
 
 @kernel
-def _inverse_masses(world: WorldView, one: int, other: int) -> float:
-    """Return the sum of the inverse masses of two members; -1 stands for a static body."""
-    total = members_of(world)[one].inverse_mass
-    if other >= 0:
-        total += members_of(world)[other].inverse_mass
-    return float(total)
-
-
-@kernel
 def _crush(world: WorldView) -> None:
     """Let those have no room, for the rest of the step, that still approach without a bounce."""
     members = members_of(world)
@@ -156,19 +150,27 @@ def _crush(world: WorldView) -> None:
 def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
     """Count the members' hits; make new plans for them, and for who planned to meet them."""
     progress, members, traits = progress_of(world), members_of(world), traits_of(world)
+    is_short = True
+    for index in range(progress.members):
+        if members[index].met > 0:
+            is_short = is_short and is_short_way(world, members[index].body)
     for index in range(progress.members):
         slot = traits[members[index].body].slot
         plans_of(world)[slot].kind = NOTHING
         if members[index].inverse_mass > 0.0:
-            # It also counts if nothing touched, so that a step always ends.
-            for _ in range(1 if progress.touches == 0 else members[index].met):
-                count_hit(world, slot)
+            # For those who had planned it, a meeting counts even if nothing came of it: each one
+            # brings a body closer to `max_hits`, so a step ends.
+            for _ in range(max(members[index].met, 1 if index < FIRST_TWO else 0)):
+                count_hit(world, slot, is_short)
             if members[index].rests:
                 count_rest(world, slot)
     count = 0
     for index in range(progress.members):
-        if members[index].met > 0 and members[index].inverse_mass > 0.0:
-            count = find_stale(world, traits[members[index].body].slot, count)
+        if members[index].inverse_mass == 0.0:
+            continue
+        slot = traits[members[index].body].slot
+        if members[index].met > 0 or plans_of(world)[slot].stage == HELD:
+            count = find_stale(world, slot, count)
     for index in range(progress.members):
         predict(world, traits[members[index].body].slot, now, now_low, False)
     predict_stale(world, count, now, now_low)

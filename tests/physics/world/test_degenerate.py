@@ -100,7 +100,7 @@ def test_too_little_room_between_two_walls_is_no_trap(velocity: tuple[float, flo
         if velocity == (0, 0) or step > 1:
             assert len(world.step(1.0)) == 0
         else:
-            with pytest.warns(HitLimitWarning, match="1000 hits"):
+            with pytest.warns(HitLimitWarning, match="10000 hits"):
                 assert 1000 <= len(world.step(1.0)) <= 1002
         assert world.capped == (velocity != (0, 0))
         assert world.velocities[2].tolist() == [0, velocity[1]]
