@@ -21,6 +21,8 @@ from stable_baselines3.common.vec_env.base_vec_env import (
     VecEnvStepReturn,
 )
 
+from ..envs.checks import counted
+
 
 class GymnasiumVecEnv(VecEnv):
     """A stable-baselines3 `VecEnv` over a Gymnasium `VectorEnv` in SAME_STEP mode.
@@ -90,7 +92,8 @@ class GymnasiumVecEnv(VecEnv):
         seeds share almost all worlds. Raises ValueError unless there is one seed for each world.
         """
         if len(seeds) != self.num_envs:
-            raise ValueError(f"{len(seeds)} seeds for {self.num_envs} worlds; give one for each")
+            worlds = counted(self.num_envs, "world")
+            raise ValueError(f"{counted(len(seeds), 'seed')} for {worlds}; give one for each")
         self._seeds = list(seeds)
 
     def step_async(self, actions: NDArray[Any]) -> None:

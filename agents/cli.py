@@ -5,7 +5,9 @@ Each subcommand is a module of `commands` with ``add_arguments(parser)`` and
 runs is imported: playing by hand needs none of the packages for training.
 """
 
+import os
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
@@ -87,6 +89,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _try(words: list[str]) -> int:
     """Run the command line; tell its mistakes in a sentence, and return the exit status."""
     try:
+        _check_working_folder()
         return _run(words)
     except SettingsError as error:
         return _fail(str(error), 2)
@@ -102,6 +105,16 @@ def _try(words: list[str]) -> int:
             raise
         install = f'{command("pip", "install", "-e")} ".[{_EXTRAS[package]}]"'
         return _fail(f"{package} is missing: run `{install}` in arkanoid's repository", 1)
+
+
+def _check_working_folder() -> None:
+    """Raise `SettingsError` if the working folder is gone: torch would crash while it loads."""
+    try:
+        os.getcwd()
+    except OSError as error:
+        raise SettingsError(
+            f"the folder that you are in cannot be read ({cause(error)}): go to another one"
+        ) from None
 
 
 def _run(words: list[str]) -> int:
@@ -146,14 +159,24 @@ def _run(words: list[str]) -> int:
             subparser.epilog = f"{subparser.epilog or ''}{_how_to_start()}"
             if name not in _WITHOUT_SETTINGS:
                 words, overrides = split_overrides(words, subparser)
+            begin = words.index(name) + 1
+            words = [*words[:begin], *options_first(words[begin:], subparser)]
     if not words:
         parser.print_help()
         return 0
     arguments, left = parser.parse_known_args(words)
     if left:
         raise chosen_parser.unknown(left[0])
+    _refuse_empty(arguments)
     status: int = module.run(arguments, overrides)
     return status
+
+
+def _refuse_empty(arguments: Namespace) -> None:
+    """Raise `SettingsError` if a text is empty, as that of a shell's variable which is not set."""
+    for name, value in vars(arguments).items():
+        if value == "" or (isinstance(value, list) and "" in value):
+            raise SettingsError(f"an empty text is given for {name}; give one, or leave it out")
 
 
 def split_overrides(
@@ -170,6 +193,9 @@ def split_overrides(
     overrides: list[tuple[str, str]] = []
     rest = iter(words)
     for word in rest:
+        if word == "--":
+            own += [word, *rest]
+            break
         name, equals, value = word.partition("=")
         if not word.startswith("--") or name in options:
             own.append(word)
@@ -185,6 +211,26 @@ def split_overrides(
             value = following
         overrides.append((name.removeprefix("--"), value))
     return own, overrides
+
+
+def options_first(words: Sequence[str], parser: Parser) -> list[str]:
+    """Return what follows a command's name with its options first and its arguments last.
+
+    argparse takes arguments from one place only. What follows ``--`` stays where it is.
+    """
+    options: list[str] = []
+    plain: list[str] = []
+    rest = iter(words)
+    for word in rest:
+        if word == "--":
+            plain += [word, *rest]
+        elif not word.startswith("-"):
+            plain.append(word)
+        else:
+            options.append(word)
+            if word in parser.option_names() and parser.takes_value(word):
+                options += [text for text in [next(rest, None)] if text is not None]
+    return [*options, *plain]
 
 
 def _is_meant_for(name: str, parser: Parser) -> bool:

@@ -11,6 +11,7 @@ from arkanoid.physics import (
     Particle,
     Rectangle,
     contact,
+    relax,
 )
 from arkanoid.physics.pairs.convex_convex import separation_along
 from arkanoid.physics.pairs.table import REGISTERED
@@ -241,3 +242,84 @@ def opened() -> Figure:
     region(axes, "a", HalfPlane((0.4, 1.0)), (0.0, -0.1), FIRST)
     region(axes, "b", HalfPlane((-1.0, 0.3)), (-0.2, 0.0), SECOND)
     return drawn
+
+
+def relaxed() -> Figure:
+    """Draw what relaxation does: to two masses, at a wall, at a seam and in a wedge."""
+    drawn = figure(7.5, 2.05)
+    titles = ("$m_a$ = 1, $m_b$ = 3", "a step into a wall", "the deepest first", "one pass each")
+    panels = [
+        panel(drawn, (0.1 + 1.85 * index, 0.1, 1.7, 1.7), view, f"relax-{index}", title)
+        for index, (title, view) in enumerate(zip(titles, RELAX_VIEWS, strict=True))
+    ]
+    draw_masses(panels[0])
+    draw_slide(panels[1])
+    draw_seam(panels[2])
+    draw_wedge(panels[3])
+    return drawn
+
+
+RELAX_VIEWS = (
+    (-2.0, -2.0, 2.0, 2.0),
+    (-1.6, -1.6, 1.6, 1.6),
+    (-1.6, -1.6, 1.6, 1.6),
+    (-1.6, -0.65, 0.7, 1.65),
+)
+
+
+def draw_masses(axes: Axes) -> None:
+    """Draw two discs before (dashed) and after, and their common centre of mass."""
+    a = Body(Particle(0.9), (-0.35, -0.45), mass=1)
+    b = Body(Particle(0.9), (0.45, 0.25), mass=3)
+    starts = a.position, b.position
+    relax(a, b, contact(a, b))
+    for name, body, start, colour in (("a", a, starts[0], FIRST), ("b", b, starts[1], SECOND)):
+        region(axes, f"{name}-start", body.collider, start, colour, ghost=True)
+        region(axes, name, body.collider, body.position, colour)
+        arrow(axes, f"{name}-way", start, body.position, head=5.0)
+    dot(axes, "centre", (a.position + 3 * b.position) / 4, ACCENT)
+    label(axes, a.position, "$a$", FIRST, shift=(-0.45, -0.2), fontsize=10)
+    label(axes, b.position, "$b$", SECOND, shift=(0.4, 0.35), fontsize=10)
+
+
+def draw_slide(axes: Axes) -> None:
+    """Draw a step into a wall, and the part of it that relaxation leaves."""
+    wall = Body(AxisAlignedRectangle(1.2, 2.6), (0.8, 0.0))
+    walker = Body(Particle(0.6), (-0.4, -0.6), mass=1)
+    region(axes, "wall", wall.collider, wall.position, GREY)
+    region(axes, "start", walker.collider, walker.position, FIRST, ghost=True)
+    start, stepped = walker.position, walker.position + np.array((0.5, 0.7))
+    walker.position = stepped
+    region(axes, "stepped", walker.collider, stepped, SECOND, ghost=True)
+    relax(wall, walker, contact(wall, walker))
+    region(axes, "end", walker.collider, walker.position, FIRST)
+    arrow(axes, "step", start, stepped, SECOND, head=5.0)
+    arrow(axes, "relaxation", stepped, walker.position, head=5.0)
+
+
+def draw_seam(axes: Axes) -> None:
+    """Draw a disc that overlaps a tile's top and, less, the corner of the next one."""
+    walker = Body(Particle(0.8), (-0.4, 0.4), mass=1)
+    region(axes, "walker", walker.collider, walker.position, FIRST)
+    for number, x in enumerate((-0.75, 0.75)):
+        tile = Body(AxisAlignedRectangle(1.5, 1.2), (x, -0.6))
+        region(axes, f"tile-{number}", tile.collider, tile.position, GREY)
+        overlap = contact(tile, walker)
+        tip = walker.position + 2 * overlap.depth * overlap.normal
+        arrow(axes, f"normal-{number}", walker.position, tip, (INK, ACCENT)[number], head=5.0)
+        words = f"depth {overlap.depth:.2f}"
+        label(axes, (1.5, 1.35 - 0.3 * number), words, (INK, ACCENT)[number], ha="right")
+
+
+def draw_wedge(axes: Axes) -> None:
+    """Draw the ways of a disc that two walls at 60 degrees push out in turn."""
+    walls = (Body(HalfPlane((-(0.75**0.5), -0.5))), Body(AxisAlignedHalfPlane("+y")))
+    ball = Body(Particle(0.5), (-0.1, 0.5), mass=1)
+    for number, wall in enumerate(walls):
+        region(axes, f"wall-{number}", wall.collider, wall.position, GREY)
+    region(axes, "start", ball.collider, ball.position, FIRST, ghost=True)
+    for number in range(8):
+        start = ball.position
+        relax(walls[number % 2], ball, contact(walls[number % 2], ball))
+        line(axes, f"way-{number}", start, ball.position, ACCENT)
+    region(axes, "end", ball.collider, ball.position, FIRST)

@@ -25,6 +25,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
     "disc_convex": impact_figures.disc_convex,
     "axes": impact_figures.axes_in_time,
     "bounce": impact_figures.bounces,
+    "relaxation": contact_figures.relaxed,
     "world": world_figures.stepped,
 }
 

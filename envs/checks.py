@@ -8,6 +8,11 @@ import numpy as np
 MAX_GAME_SEED = 2**64 - 1  # the generator of a game tells these seeds apart
 
 
+def counted(count: int, noun: str) -> str:
+    """Return a number with its noun: ``1 game``, ``2 games``, ``1,000 games``."""
+    return f"{count:,} {noun if count == 1 else f'{noun}s'}"
+
+
 def check_choice(name: str, value: object, legal: tuple[str, ...]) -> None:
     """Raise a ValueError unless a value is one of some words."""
     if value not in legal:
@@ -66,7 +71,9 @@ def check_seeds(seed: Any, count: int) -> list[int | None]:
         check_integer("seed", seed, 0, MAX_GAME_SEED + 1 - count)
         return [int(seed) + index for index in range(count)]
     if len(seed) != count:
-        raise ValueError(f"{len(seed)} seeds for {count} worlds; give one for each")
+        raise ValueError(
+            f"{counted(len(seed), 'seed')} for {counted(count, 'world')}; give one for each"
+        )
     for index, each in enumerate(seed):
         if each is not None:
             check_integer(f"seed[{index}]", each, 0, MAX_GAME_SEED)

@@ -63,7 +63,7 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
                 self._tensors = TensorBatch(self._batch, self.device)
         except torch.OutOfMemoryError as error:
             raise MemoryError(
-                f"num_envs={num_envs} worlds do not fit into the memory of {self.device}"
+                f"num_envs={num_envs} does not fit into the memory of {self.device}"
             ) from error
         self._was_reset = np.zeros(num_envs, np.bool_)
         self._owners = torch.ones(num_envs, dtype=torch.bool, device=self.device)

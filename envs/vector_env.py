@@ -13,7 +13,7 @@ from .batch.batch import Autoreset, Batch
 from .batch.infos import final_infos, infos_of
 from .batch.snapshots import restore_snapshot, spread_snapshot, take_snapshot
 from .batch.starts import set_start
-from .checks import check_boolean, check_integer, check_seeds
+from .checks import check_boolean, check_integer, check_seeds, counted
 from .config import MOST_WORLDS, Config
 from .hints import BATCH_KEYWORDS
 from .interface import (
@@ -109,7 +109,7 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         try:
             self._batch = Batch(num_envs, self.config, self._mode, threads)
         except MemoryError as error:
-            raise MemoryError(f"num_envs={num_envs} worlds do not fit into memory") from error
+            raise MemoryError(f"num_envs={num_envs} does not fit into memory") from error
         self.single_observation_space = self._batch.observer.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.single_action_space = action_space(self.config)
@@ -261,7 +261,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         if not isinstance(values, list | tuple):
             values = [values] * self.num_envs
         if len(values) != self.num_envs:
-            raise ValueError(f"{len(values)} values for {self.num_envs} worlds; give one for each")
+            worlds = counted(self.num_envs, "world")
+            raise ValueError(f"{counted(len(values), 'value')} for {worlds}; give one for each")
         if not hasattr(self, name):
             self._attributes[name] = tuple(values)
             return

@@ -6,6 +6,8 @@ from numbers import Real
 from operator import index
 from typing import Any
 
+from .tolerances import FARTHEST
+
 Vector = tuple[float, float]
 
 
@@ -79,6 +81,14 @@ def vector(name: str, value: Any) -> Vector:
     if len(components) != 2:
         raise ValueError(f"{name} must be two numbers (x, y), but has {len(components)}: {value!r}")
     return finite(f"{name}[0]", components[0]), finite(f"{name}[1]", components[1])
+
+
+def near(name: str, value: Any) -> Vector:
+    """Return two numbers, of which the engine may take the squares, as a tuple of floats."""
+    x, y = vector(name, value)
+    if max(abs(x), abs(y)) > FARTHEST:
+        raise ValueError(f"{name} must be at most {FARTHEST:g} away from 0, but is {value!r}")
+    return x, y
 
 
 def duration(name: str, value: Any) -> float:

@@ -12,14 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .arguments import duration as checked_duration
-from .arguments import inverse_mass, not_negative, vector
+from .arguments import inverse_mass, near, not_negative, vector
 from .body import FloatArray
 from .errors import InseparableError
 from .pairs.response import bounce_velocities, shares
 from .pairs.table import contact_between, impact_between, overlap_between
+from .pairs.touching import touch_margins
 from .protocols import Collidable, Dynamic, Moving
 from .shapes.colliders import Collider
 from .shapes.table import ShapeTable, shape_table
+from .tolerances import FARTHEST
 
 
 class Contact(NamedTuple):
@@ -50,9 +52,12 @@ class Impact(NamedTuple):
 
 
 def detect(a: Collidable, b: Collidable) -> bool:
-    """Return whether the interiors of a and b overlap. Touching is not overlapping."""
-    shapes, edges, dx, dy = _pair(a, b)
-    return bool(overlap_between(shapes, edges, 0, 1, dx, dy))
+    """Return whether the interiors of a and b overlap. Touching is not overlapping.
+
+    They touch up to an overlap of 1e-12 of their coordinates and sizes, which rounding may hide.
+    """
+    shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
+    return bool(overlap_between(shapes, edges, 0, 1, dx, dy, margin_x, margin_y))
 
 
 def contact(a: Collidable, b: Collidable) -> Contact | None:
@@ -61,8 +66,10 @@ def contact(a: Collidable, b: Collidable) -> Contact | None:
     Moving a by ``-normal * depth`` or b by ``normal * depth`` separates them, and no shorter
     translation does.
     """
-    shapes, edges, dx, dy = _pair(a, b)
-    found, normal_x, normal_y, depth, x, y = contact_between(shapes, edges, 0, 1, dx, dy)
+    shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
+    found, normal_x, normal_y, depth, x, y = contact_between(
+        shapes, edges, 0, 1, dx, dy, margin_x, margin_y
+    )
     if not found:
         return None
     origin_x, origin_y = a.position
@@ -84,9 +91,10 @@ def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> 
         the contact's.
     """
     horizon = checked_duration("duration", duration)
-    shapes, edges, dx, dy = _pair(a, b)
+    shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
     velocity_ax, velocity_ay = _velocity(a)
     velocity_bx, velocity_by = _velocity(b)
+    velocity = near("the relative velocity", (velocity_bx - velocity_ax, velocity_by - velocity_ay))
     time, normal_x, normal_y = impact_between(
         shapes,
         edges,
@@ -94,9 +102,10 @@ def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> 
         1,
         dx,
         dy,
-        velocity_bx - velocity_ax,
-        velocity_by - velocity_ay,
+        *velocity,
         horizon,
+        margin_x,
+        margin_y,
     )
     if time == math.inf:
         return None
@@ -202,8 +211,11 @@ def _pair_table(a: Collider, b: Collider) -> ShapeTable:
     return shape_table((a, b))
 
 
-def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
-    """Return (shapes, edges, dx, dy) of two objects: their records, and b's position from a."""
+def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float, float, float]:
+    """Return (shapes, edges, dx, dy, margin_x, margin_y) of two objects.
+
+    These are their records, b's position from a, and up to which gap they touch.
+    """
     try:
         shapes, edges = _pair_table(a.collider, b.collider)
         ax, ay = a.position
@@ -218,9 +230,14 @@ def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
         _check(a)
         _check(b)
         raise ValueError("the positions are too far apart for a float") from None
-    if not (math.isfinite(dx) and math.isfinite(dy)):
-        raise ValueError(f"positions must be finite, but are ({ax}, {ay}) and ({bx}, {by})")
-    return shapes, edges, dx, dy
+    if not (abs(dx) <= FARTHEST and abs(dy) <= FARTHEST):
+        if not (math.isfinite(dx) and math.isfinite(dy)):
+            raise ValueError(f"positions must be finite, but are ({ax}, {ay}) and ({bx}, {by})")
+        near("the distance between the positions", (dx, dy))
+    margin_x, margin_y = touch_margins(
+        shapes, edges, 0, 1, float(ax), float(ay), float(bx), float(by)
+    )
+    return shapes, edges, dx, dy, margin_x, margin_y
 
 
 def _check(item: Any) -> None:

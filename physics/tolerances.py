@@ -1,8 +1,4 @@
-"""Every tolerance of the engine, with its unit and its reason.
-
-Whether two discs, boxes or a disc and a face overlap, and when they meet, is decided by comparing
-floating-point numbers as they are.
-"""
+"""Every tolerance of the engine, with its unit and its reason."""
 
 # Radians. Two directions closer than this count as parallel. Rotating a polygon leaves errors of
 # about 1e-16 in its normals; two strips that are meant to be parallel must not become inseparable
@@ -17,10 +13,11 @@ NO_SPEED_SQUARED = 1e-290
 # edge shorter than this is a corner: rounding alone can make or unmake it.
 NO_LENGTH = 1e-12
 
-# A fraction of a point's coordinates (plus the overlap itself). A body that moved to where it
-# touches may overlap by a few of the last digits, 1e-16. One that overlaps by more was put there,
-# and is relaxed.
-NO_DEPTH = 1e-12
+# A fraction of the coordinates of two bodies and of their sizes, along an axis: 4096 roundings of
+# these numbers. Up to this gap, and up to this overlap, the two touch. Finding the gap takes about
+# 16 roundings, and each step in which a body slides down a slope adds one. A body that is deeper
+# was put there, and is relaxed.
+TOUCH = 2.0**-41
 
 # A fraction of the speeds that two bodies have had since their plans were made, |vx| + |vy|. Bodies
 # that approach more slowly only seem to, by the rounding of the hits before: each leaves an error
@@ -31,13 +28,13 @@ NO_APPROACH = 1e-14
 # each round reduces the overlaps by a constant factor; where there is no room, this limit ends it.
 RELAX_ROUNDS = 64
 
-# A fraction of the coordinates of where two bodies meet. Points closer than this count as one:
-# which of two static bodies is met first there is a matter of rounding.
-SAME_POINT = 1e-15
+# A fraction of a body's speed. Which of two static bodies it meets first is a matter of rounding if
+# it touches both; they are compared if it approaches them at least this fast.
+FLATTEST = 1e-9
 
-# A fraction of the coordinates of where bodies touch and come from. Touches whose gaps differ by
-# less happen at the same time: a place is the sum of some such numbers, with errors of 1e-16 each.
-SAME_TIME = 1e-14
+# Lengths and speeds. The engine multiplies up to two of them, and the squares of larger ones are no
+# numbers.
+FARTHEST = 1e140
 
 # A fraction of a group's speeds, and of the changes of them. A group is resolved when no touch
 # lacks more; the hits that would follow are slower than NO_APPROACH.

@@ -1,6 +1,9 @@
 """The documentation's code prints what the pages say, and its figures are up to date."""
 
+import importlib
+import itertools
 import re
+from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -45,6 +48,56 @@ def test_example_runs(example: Path, tmp_path: Path) -> None:
     assert run_python(example, cwd=tmp_path).stdout.strip()
 
 
+def test_the_film_of_the_platformer_is_what_it_draws(tmp_path: Path) -> None:
+    """If it is not: run the example, look at the film, and copy it to docs/pictures."""
+    run_python(EXAMPLES / "platformer.py", cwd=tmp_path)
+    old, new = (numbers(folder / "platformer.svg") for folder in (DOCS / "pictures", tmp_path))
+    np.testing.assert_allclose(new, old, rtol=0, atol=0.02)  # hundredths of a tile are drawn
+
+
+@pytest.mark.parametrize("height", range(0, 12, 2))
+def test_the_hero_of_the_platformer_walks_over_every_seam(
+    height: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """He stopped dead where two tiles met if rounding let him overlap the next one by a digit."""
+    monkeypatch.syspath_prepend(EXAMPLES)
+    platformer = importlib.import_module("platformer")
+    floor = "\n.P......................\n########################\n"
+    monkeypatch.setattr(platformer, "LEVEL", floor + "#.......................\n" * height)
+    for tall, speed in itertools.product((0.2, 0.3, 0.7, 0.9), (1.0, 3.3, 4.0)):
+        monkeypatch.setitem(platformer.MARKS, "P", ("", 0.6, tall))
+        monkeypatch.setattr(platformer, "WALK", speed)
+        game = platformer.Game()
+        game.world.place(game.hero, position=(1.0, height + 0.5 + 0.5 * tall))
+        for tick in range(1, 240):
+            game.tick("right")
+            x, y = game.world.body(game.hero).position
+            assert x == pytest.approx(1.0 + speed * tick * platformer.TICK, abs=1e-9)
+            assert y == pytest.approx(height + 0.5 + 0.5 * tall, abs=1e-9)
+
+
+def test_nobody_in_the_crowd_overlaps_and_all_are_drawn(tmp_path: Path) -> None:
+    """What a crowd does hangs on the last digit of everything, so its shapes are only counted."""
+    printed = run_python(EXAMPLES / "crowd.py", cwd=tmp_path).stdout.splitlines()
+    gaps = [float(line.rpartition(" ")[2]) for line in printed]
+    assert len(gaps) == 4
+    assert min(gaps) >= 0.0
+    old, new = (
+        Counter(part.tag for part in ElementTree.parse(folder / "crowd.svg").iter())
+        for folder in (DOCS / "pictures", tmp_path)
+    )
+    assert old == new
+
+
+def test_every_exercise_has_an_answer_that_is_folded_away() -> None:
+    page = (DOCS / "engine.md").read_text(encoding="utf-8")
+    exercises = [int(number) for number in re.findall(r"^\*\*Exercise (\d+)\.", page, re.MULTILINE)]
+    assert exercises == list(range(1, len(exercises) + 1)) != []
+    answer = r"<details>\n<summary>Answer</summary>\n\n.+?\n\n</details>\n"
+    assert len(re.findall(answer, page, re.DOTALL)) == len(exercises)
+    assert page.count("<details") == page.count("</details>") == len(exercises)
+
+
 def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path) -> None:
     """As a newcomer would run it, but with a short training; it shows two games, films and SVG."""
     notebook = EXAMPLES / "first_hour.ipynb"
@@ -66,6 +119,12 @@ def test_figures_of_the_readme_are_measured_ones() -> None:
     figures = {figure for cell in cells for figure in re.findall(number, cell)}
     assert len(figures) > 10
     assert figures - set(re.findall(number, kept)) == set()
+
+
+def numbers(picture: Path) -> np.ndarray:
+    """Return all numbers of a picture's text in order."""
+    text = picture.read_text(encoding="utf-8")
+    return np.array(re.findall(r"-?\d*\.?\d+", text), float)
 
 
 def drawn(figure: Path) -> dict[str, np.ndarray]:

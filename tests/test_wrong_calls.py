@@ -9,14 +9,16 @@ import shutil
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
+from zipfile import ZipFile
 
 import pytest
-from arkanoid.agents.experiment.runs import pretrained_run
+from arkanoid.agents.experiment.packed import WEIGHTS
 from helpers.processes import ARKANOID
+from helpers.runs import packaged_copy
 
 if sys.platform == "win32":
     pytest.skip("there are no pseudo-terminals", allow_module_level=True)
@@ -52,6 +54,27 @@ CALLS = {
     "reproduce RUN --seed 1": "its own settings",
     "evaluate RUN RUN": "given twice",
     "train quick --track tensorboard": "'mlflow'",
+    # Options and settings that would change nothing there
+    "evaluate RUN --ppo.gamma 0.9": "--ppo.gamma changes nothing here",
+    "evaluate RUN --validation.episodes 3": "did you mean --evaluation.episodes?",
+    "evaluate RUN --evaluation.film_seconds 3": "changes nothing here",
+    "watch RUN --seed 5": "did you mean --evaluation.seed?",
+    "film RUN x.gif --imitation.epochs 3": "changes nothing here",
+    "report RUN --training.timesteps 5": "changes nothing here",
+    "dataset a/b-v0 RUN --ppo.gamma 1": "changes nothing here",
+    "dataset a/b-v0 a.replay --games 3": "games that were played",
+    "film RUN x.gif --level named": "a film shows one",
+    "film RUN x.gif --out y.gif": "two films are named",
+    "film --out": "--out",
+    "replay mine.txt --from 3": "--export",
+    "replay mine.txt --verify --height 64": "--verify",
+    "levels spiral --difficulty 0.3": "of generated levels",
+    # Lists, empty texts, and names that are none
+    "evaluate RUN --evaluation.baselines planner": """typed as '["planner"]'""",
+    "train --network.hidden 64": "typed as '[64]'",
+    "film RUN x.gif --level=": "an empty text is given for level",
+    "levels seeds:9-3": "got 'seeds:9-3'",
+    "dataset a/b-v0 nobody": "neither a baseline",
     # Settings
     "train --ppo.gama 0.9": "'ppo.gamma'",
     "train --seed -1": "at least 0",
@@ -130,13 +153,16 @@ class Answer(NamedTuple):
     seconds: float
 
 
-def typed(call: str, folder: Path, **variables: str) -> Answer:
-    """Type a call into a terminal of 80 columns, and wait for its end."""
+def typed(call: str, folder: Path, before: Sequence[str] = (), **variables: str) -> Answer:
+    """Type a call into a terminal of 80 columns, and wait for its end.
+
+    ``before`` is a program that does something first, and then becomes the call.
+    """
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
     environment = {**os.environ, "PYTHONIOENCODING": "utf-8", **NO_SCREEN, **variables}
     process = subprocess.Popen(
-        [*ARKANOID, *call.split()],
+        [*before, *ARKANOID, *call.split()],
         cwd=folder,
         env=environment,
         stdin=theirs,
@@ -162,13 +188,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a run, and with files that are not what a call takes them for."""
     folder = tmp_path_factory.mktemp("calls")
     run = folder / "RUN"
-    shutil.copytree(pretrained_run(), run, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    packaged_copy(run)
     (run / "notes.txt").write_text("Monday: trained.\n")
     cut = folder / "cut"
     cut.mkdir()
     shutil.copy(run / "config.toml", cut)
     (cut / "model.zip").write_bytes((run / "model.zip").read_bytes()[:3000])
-    shutil.copy(run / "model.zip", folder / "others.zip")
+    with ZipFile(run / "model.zip") as ours, ZipFile(folder / "others.zip", "w") as others:
+        others.writestr(WEIGHTS, ours.read(WEIGHTS))
     (folder / "mine.txt").write_text("name: Mine\n\n.rrrrrrrrr.\n")
     (folder / "wrong.txt").write_text("name: Wrong\n\n.rkrrrrrrr.\n")
     return folder
@@ -217,6 +244,17 @@ def test_without_a_display_it_says_what_works(
 def test_a_display_that_does_not_answer_is_none(folder: Path) -> None:
     """SDL then takes a driver that shows nothing."""
     check(typed("play", folder, DISPLAY=":4711"), "no display")
+
+
+@pytest.mark.skipif(not LINUX, reason="folders in use cannot be deleted elsewhere")
+@pytest.mark.parametrize("call", ["levels", "evaluate"])
+def test_a_folder_that_was_deleted_is_named(call: str, tmp_path: Path) -> None:
+    """Torch ended the whole process, with an error of its library for linear algebra."""
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    program = "import os, sys; os.rmdir(os.getcwd()); os.execv(sys.argv[1], sys.argv[1:])"
+    answer = typed(call, gone, before=[sys.executable, "-c", program])
+    check(answer, "go to another one")
 
 
 def test_a_missing_extra_is_named(folder: Path, tmp_path: Path) -> None:

@@ -5,21 +5,30 @@ import math
 import re
 import shutil
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from itertools import groupby
 from typing import Any, NoReturn
 
 from ..experiment.errors import SettingsError
 from ..experiment.numbers import parse_whole
+from ..experiment.packaged import DEFAULT_AGENT, packaged_agents
 from ..experiment.programs import arkanoid
 
+# The settings that decide how a saved model plays.
+PLAYED = (
+    *("env_id", "env", "training.device", "training.torch_threads"),
+    *("evaluation.seed", "evaluation.deterministic"),
+)
+# And those that decide how it is measured.
+MEASURED = ("env_id", "env", "training.device", "training.torch_threads", "evaluation")
 NAMED = "named"  # stands for all named levels
 # What `--level` and LEVEL take, everywhere.
 LEVELS = (
     "a level's name, a level file, seed:N for a generated one, or several: seeds:A-B, train, test, "
     "named"
 )
+LEVEL = "a level's name, a level file, or seed:N for a generated one"
 # Lines are not longer, however wide the terminal is.
 _WIDEST = 100
 _HARD = "\xa0"  # a space at which no line ends
@@ -89,6 +98,36 @@ class Help(argparse.RawDescriptionHelpFormatter):
         return "\n".join(parts)
 
 
+def check_settings(
+    overrides: Sequence[tuple[str, str]], taken: Sequence[str], but: Sequence[str] = ()
+) -> None:
+    """Raise `SettingsError` if one of the settings ``(key, text)`` would change nothing.
+
+    Keys that are none at all are left to whoever reads the settings.
+
+    Args:
+        overrides: as typed.
+        taken: what the command makes use of: keys, and tables of keys.
+        but: keys in these tables that it does not.
+    """
+    from ..experiment.reading import describe_settings
+    from ..experiment.settings import Experiment
+
+    def is_taken(key: str) -> bool:
+        return key not in but and (key in taken or key.partition(".")[0] in taken)
+
+    known = describe_settings(Experiment)
+    tables = {key.partition(".")[0] for key in known}
+    for key, _ in overrides:
+        if is_taken(key) or key.partition(".")[0] not in tables:
+            continue
+        name = key.rpartition(".")[2]
+        meant = [one for one in known if is_taken(one) and one.rpartition(".")[2] == name]
+        takes = [one if one in known and not known[one].is_free else f"{one}.KEY" for one in taken]
+        hint = f"did you mean --{meant[0]}?" if meant else f"what does: {', '.join(takes)}"
+        raise SettingsError(f"--{key} changes nothing here; {hint}")
+
+
 def help_width() -> int:
     """Return how long the lines of a help may be."""
     return min(shutil.get_terminal_size().columns, _WIDEST) - 1
@@ -144,14 +183,22 @@ def positive(text: str) -> float:
     return value
 
 
+def check_difficulty(levels: Iterable[str]) -> None:
+    """Raise `SettingsError` if none of some levels is generated: others have no difficulty."""
+    from ...envs.levels.plan import seed_range
+
+    if all(seed_range(level) is None for level in levels):
+        raise SettingsError("--difficulty is of generated levels, as in seed:7")
+
+
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the argument that names a model."""
     parser.add_argument(
         "model",
         metavar="MODEL",
         nargs="?",
-        help="the folder of a run or a model's .zip file; default: the agent that comes with the "
-        "package",
+        help="the folder of a run, a model's .zip file, or the name of an agent in the package: "
+        f"{', '.join(packaged_agents())}; default: {DEFAULT_AGENT}",
     )
     add_trust(parser)
 

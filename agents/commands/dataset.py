@@ -4,11 +4,13 @@ import argparse
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from ...envs.checks import counted
 from ...envs.config import SEEN
 from ..experiment.datasets import Episode, Written, check_new, write_dataset
 from ..experiment.errors import SettingsError
+from ..experiment.packaged import find_agent, packaged_agents
 from ..experiment.seeds import Purpose, spread_seeds
-from .arguments import LEVELS, add_trust, whole
+from .arguments import LEVELS, PLAYED, add_trust, check_settings, whole
 from .train import DEFAULT_CONFIG
 
 if TYPE_CHECKING:
@@ -21,7 +23,8 @@ DEFAULT_DECISIONS = 2000
 _LOOK = "env."
 
 _EPILOG = """\
-PLAYER is a baseline (planner, ball-follower, ...), a run or model file, or *.replay files.
+PLAYER is a baseline (planner, ball-follower, ...), a packaged agent (lite, full), a run or model
+file, or *.replay files.
 
   arkanoid dataset arkanoid/planner-v0 planner --config lite --level named
   arkanoid dataset arkanoid/lite-v0 runs/lite-seed0 --env.observation rgb
@@ -43,19 +46,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--games",
         type=whole(1),
-        default=DEFAULT_GAMES,
         help=f"how many, on each level; default: {DEFAULT_GAMES}",
     )
     parser.add_argument(
         "--decisions",
         type=whole(1),
-        default=DEFAULT_DECISIONS,
         help=f"after so many a game is truncated; default: {DEFAULT_DECISIONS}",
     )
     parser.add_argument(
         "--games-seed",
         type=whole(0),
-        default=0,
         metavar="N",
         help="of the games, which no training, validation or evaluation plays; default: 0",
     )
@@ -77,11 +77,18 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         )
     elif players[0] in BASELINES:
         written = _write_baseline(arguments, overrides)
+    elif not find_agent(players[0]).exists():
+        agents = ", ".join(packaged_agents())
+        raise SettingsError(
+            f"{players[0]}: neither a baseline ({', '.join(BASELINES)}) nor a packaged agent "
+            f"({agents}), a file or a folder"
+        )
     else:
         written = _write_model(arguments, overrides)
     print(
-        f"data set {arguments.id}: {written.episodes} games, {written.decisions:,} decisions, "
-        f"mean return {written.mean_return:.3f}\nfiles    {written.folder}"
+        f"data set {arguments.id}: {counted(written.episodes, 'game')}, "
+        f"{counted(written.decisions, 'decision')}, mean return {written.mean_return:.3f}\n"
+        f"files    {written.folder}"
     )
     return 0
 
@@ -91,6 +98,7 @@ def _write_baseline(arguments: argparse.Namespace, overrides: list[tuple[str, st
     from ..measure.baselines import make_baseline
 
     (name,) = arguments.players
+    check_settings(overrides, ("env_id", "env"))
     experiment = load_experiment(arguments.config or DEFAULT_CONFIG, overrides)
     # Baselines understand one observation only, whatever the data set shows.
     played = experiment.config.of_the_game()
@@ -108,6 +116,7 @@ def _write_model(arguments: argparse.Namespace, overrides: list[tuple[str, str]]
 
     if arguments.config is not None:
         raise SettingsError("--config is for baselines: a model plays the game of its run")
+    check_settings(overrides, PLAYED)
     model = ModelFile.find(arguments.players[0], arguments.trust)
     others = [(key, text) for key, text in overrides if not _is_look(key)]
     experiment = model.experiment(others)
@@ -147,8 +156,8 @@ def _write_games(
         make_policy,
         played,
         experiment.game,
-        spread_seeds(arguments.games_seed, Purpose.DATASET, arguments.games),
-        arguments.decisions,
+        spread_seeds(arguments.games_seed or 0, Purpose.DATASET, arguments.games or DEFAULT_GAMES),
+        arguments.decisions or DEFAULT_DECISIONS,
         starts,
     )
     env = gym.make(experiment.env_id, **experiment.game.plain())
@@ -163,6 +172,10 @@ def _write_replays(arguments: argparse.Namespace, overrides: list[tuple[str, str
     from ...envs.batch.replays import Replay
     from ..experiment.reading import parse_toml_value
 
+    for name in ("config", "level", "games", "decisions", "games_seed"):
+        if getattr(arguments, name) is not None:
+            option = f"--{name.replace('_', '-')}"
+            raise SettingsError(f"{option} changes nothing: replays are games that were played")
     keywords = {}
     for key, text in overrides:
         if not key.startswith(_LOOK):

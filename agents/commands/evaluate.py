@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING
 
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_new_folder
-from .arguments import add_trust, output_width
+from ..experiment.packaged import DEFAULT_AGENT, packaged_agents
+from .arguments import MEASURED, add_trust, check_settings, output_width
 
 if TYPE_CHECKING:
     from ..experiment.runs import ModelFile
     from ..experiment.settings import Experiment
+
+_FILM = "evaluation.film_seconds"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,8 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "models",
         metavar="MODEL",
         nargs="*",
-        help="folders of runs, or model files in them; runs that differ only in their seeds are "
-        "measured as one agent; default: the agent that comes with the package",
+        help="folders of runs, model files, or names of agents in the package: "
+        f"{', '.join(packaged_agents())}; runs that differ only in their seeds are measured as one "
+        f"agent; default: {DEFAULT_AGENT}",
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     parser.add_argument("--plots", metavar="FOLDER", help="draw the results into this folder")
@@ -41,6 +45,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Evaluate, print and draw; return the exit status."""
     from ..experiment.runs import ModelFile
 
+    check_settings(overrides, MEASURED, but=[_FILM])
     models = [ModelFile.find(name, arguments.trust) for name in arguments.models or [None]]
     experiment = models[0].experiment(overrides)
     agents = group_by_experiment(models, overrides)

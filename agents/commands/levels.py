@@ -9,7 +9,7 @@ from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_picture, level_mistake
 from ..experiment.programs import arkanoid
-from .arguments import LEVELS, NAMED, number
+from .arguments import LEVELS, NAMED, check_difficulty, number
 
 _MOST = 100  # levels that are shown at once
 
@@ -50,10 +50,13 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
     difficulty = DIFFICULTY if arguments.difficulty is None else arguments.difficulty
     try:
+        each = _each(arguments.levels or [NAMED])
+        if arguments.difficulty is not None:
+            check_difficulty(each)
         if arguments.png is not None:
-            _draw(_each(arguments.levels or [NAMED]), difficulty, Path(arguments.png))
+            _draw(each, difficulty, Path(arguments.png))
         elif arguments.levels:
-            _print(_each(arguments.levels), difficulty)
+            _print(each, difficulty)
         else:
             print(list_levels())
             print(f"\nto draw one: {arkanoid('levels spiral')}")

@@ -3,6 +3,8 @@
 import argparse
 import itertools
 import secrets
+import sys
+import tempfile
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,9 +13,9 @@ import gymnasium as gym
 import platformdirs
 
 from ..experiment.errors import SettingsError
-from ..experiment.files import level_mistake, quoted
+from ..experiment.files import cause, level_mistake, printable, quoted
 from ..experiment.programs import arkanoid
-from .arguments import LEVELS, NAMED, whole
+from .arguments import LEVELS, NAMED, check_difficulty, whole
 from .screen import require_screen
 
 if TYPE_CHECKING:
@@ -71,6 +73,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     film = arkanoid("film", "game.gif", *([] if level is None else ["--level", quoted(level)]))
     require_screen(f"a film of the agent that comes with the package needs none: {film}")
     # The game imports Numba, which is slow.
+    from ...envs.levels import CAMPAIGN
     from ...envs.play.by_hand import hand_config, play_by_hand
 
     keywords: dict[str, Any] = dict(gym.spec("ArkanoidLite-v0").kwargs) if arguments.lite else {}
@@ -81,8 +84,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     seed = secrets.randbits(62) if arguments.seed is None else arguments.seed
     save = _Saver(arguments.save)
     try:
+        # After the campaign come generated levels.
+        in_campaign = level is None or level in CAMPAIGN
+        if arguments.difficulty is not None and not in_campaign:
+            check_difficulty([str(level)])
         config, options = hand_config(level, arguments.difficulty, **keywords)
-        interrupted = play_by_hand(config, options, seed, save, _score_file())
+        interrupted = play_by_hand(config, options, seed, save, save.scores)
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
@@ -91,25 +98,67 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
 
 class _Saver:
-    """Saves replays and says where; it never overwrites a file."""
+    """Saves replays and says where; it never overwrites a file.
+
+    What cannot be saved does not end the game: a line says so.
+
+    Args:
+        path: of the first replay; None: dated files in the user's folder, if it can be written.
+
+    Attributes:
+        scores: the user's file of high scores, beside the folder for replays; None if they cannot
+            be kept.
+    """
 
     def __init__(self, path: str | None) -> None:
         self._path = None if path is None else Path(path)
-        folder = _replay_folder() if self._path is None else self._path.parent
+        self._folder = _replay_folder()
         # A folder that cannot be made is an error before the game, not after it.
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise SettingsError(f"{folder}: {error.strerror}; choose another --save") from None
+        if self._path is not None:
+            try:
+                self._path.parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                folder = self._path.parent
+                raise SettingsError(f"{folder}: {error.strerror}; choose another --save") from None
+        reason = _why_unwritable(self._folder)
+        self._keeps = self._path is not None or reason is None
+        self.scores = None if reason is not None else self._folder.with_name("scores.json")
+        if reason is not None:
+            lost = (
+                "high scores are not kept"
+                if self._keeps
+                else "neither replays nor high scores are kept; --save FILE keeps replays"
+            )
+            _warn(f"{self._folder.parent}: {reason}: {lost}")
 
     def __call__(self, replay: "Replay") -> None:
-        path = free_path(
-            self._path or _replay_folder() / f"{datetime.now():%Y-%m-%d_%H-%M-%S}.replay"
-        )
-        replay.save(path)
         result = replay.result
-        again = arkanoid("replay", path)
-        print(f"score {result.score}, round {result.round}; watch it: {again}")
+        again = ""
+        if self._keeps:
+            path = free_path(
+                self._path or self._folder / f"{datetime.now():%Y-%m-%d_%H-%M-%S}.replay"
+            )
+            try:
+                replay.save(path)
+                again = f"; watch it: {arkanoid('replay', path)}"
+            except OSError as error:
+                _warn(f"{path}: the game could not be saved: {cause(error)}")
+        print(f"score {result.score}, round {result.round}{again}")
+
+
+def _why_unwritable(folder: Path) -> str | None:
+    """Return why nothing can be kept in a folder, which is made if it can be; None if it can."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for one in (folder, folder.parent):
+            tempfile.TemporaryFile(dir=one).close()
+    except OSError as error:
+        return cause(error)
+    return None
+
+
+def _warn(text: str) -> None:
+    print(f"arkanoid: warning: {printable(text)}", file=sys.stderr, flush=True)
 
 
 def free_path(path: Path) -> Path:
@@ -119,11 +168,6 @@ def free_path(path: Path) -> Path:
     while free.exists():
         free = path.with_stem(f"{path.stem}-{next(copies)}")
     return free
-
-
-def _score_file() -> Path:
-    """Return the user's file of high scores, beside the folder for replays."""
-    return _replay_folder().with_name("scores.json")
 
 
 def _replay_folder() -> Path:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
+from ...envs.checks import counted
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_folder, printable
 from ..experiment.programs import arkanoid
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ...envs.batch.replays import Replay
 
 _FASTEST = 1000.0  # and as much slower
+_HEIGHT = 512
 
 _EPILOG = """\
 keys in the window: space or P pause, + faster, - slower, R from the start, F fill the screen,
@@ -38,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--speed",
         type=number(1 / _FASTEST, _FASTEST),
-        default=1.0,
         metavar="X",
         help="factor on the speed (default: 1)",
     )
@@ -56,25 +57,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--from",
         dest="start",
         type=number(0.0),
-        default=0.0,
         metavar="S",
-        help="begin at this second",
+        help="begin the export at this second",
     )
     parser.add_argument(
-        "--to", dest="stop", type=number(0.0), metavar="S", help="end at this second"
+        "--to", dest="stop", type=number(0.0), metavar="S", help="end it at this second"
     )
     parser.add_argument(
         "--height",
         type=whole(2),
-        default=512,
         metavar="N",
-        help="of exported pictures (default: 512)",
+        help=f"of exported pictures (default: {_HEIGHT})",
     )
     parser.epilog = _EPILOG
 
 
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Show, export or check; return the exit status (1: another game; 130 after Ctrl-C)."""
+    _check_together(arguments)
     if arguments.export is not None:
         _check_export(Path(arguments.export))
     # The game imports Numba, which is slow.
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         require_screen(f"a film needs none: {arkanoid(*words)}")
         from ...envs.play.by_hand import view_replay
 
-        return 130 if view_replay(replay, arguments.speed) else 0
+        return 130 if view_replay(replay, arguments.speed or 1.0) else 0
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except (TypeError, ValueError) as error:
@@ -101,13 +101,28 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         return 1
 
 
+def _check_together(arguments: argparse.Namespace) -> None:
+    """Raise `SettingsError` if an option would change nothing beside the others."""
+    of_films = {"--from": arguments.start, "--to": arguments.stop, "--height": arguments.height}
+    if arguments.verify:
+        needless = of_films | {"--speed": arguments.speed, "--export": arguments.export}
+        reason = "nothing while --verify plays the whole game"
+    else:
+        needless = {} if arguments.export is not None else of_films
+        reason = "what --export writes, and nothing else"
+    given = [name for name, value in needless.items() if value is not None]
+    if given:
+        raise SettingsError(f"{given[0]} changes {reason}")
+
+
 def _verify(replay: "Replay") -> int:
     from ...envs.batch.playback import play_replay
 
     result = play_replay(replay)
+    decisions = counted(result.decisions, "decision")
     print(
-        f"the same game, bit for bit: {result.decisions} decisions, score {result.score}, "
-        f"round {result.round}; recorded with release {replay.version}"
+        f"the same game, bit for bit: {decisions}, score {result.score}, round {result.round}; "
+        f"recorded with release {replay.version}"
     )
     return 0
 
@@ -122,7 +137,7 @@ def _check_export(path: Path) -> None:
 def _export(replay: "Replay", arguments: argparse.Namespace) -> int:
     path = Path(arguments.export)
     suffix = path.suffix.lower()
-    rate = replay.frames_per_second * arguments.speed
+    rate = replay.frames_per_second * (arguments.speed or 1.0)
     if suffix in RATES:
         stride = max(1, math.ceil(rate / RATES[suffix]))
         write_film(path, _pictures(replay, arguments, stride), rate / stride)
@@ -146,17 +161,19 @@ def _pictures(
     from ...envs.draw.picture import draw_world
     from ...envs.draw.view import FULL_HEIGHT, FULL_WIDTH
 
-    height = arguments.height + arguments.height % 2
+    height = arguments.height or _HEIGHT
+    height += height % 2
     width = round(height * FULL_WIDTH / FULL_HEIGHT / 2) * 2
     rate = replay.frames_per_second
     last = replay.result.decisions
     # Enormous numbers of seconds have no rounded product.
     if arguments.stop is not None:
         last = round(min(last, arguments.stop * rate))
-    first = round(min(last + 1, arguments.start * rate))
+    start = arguments.start or 0.0
+    first = round(min(last + 1, start * rate))
     if first > last:
         raise SettingsError(
-            f"the part from second {arguments.start:g} on is empty; the game lasts "
+            f"the part from second {start:g} on is empty; the game lasts "
             f"{replay.result.decisions / rate:.1f} s"
         )
     for index, batch in enumerate(replay_states(replay)):

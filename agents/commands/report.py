@@ -6,7 +6,7 @@ from pathlib import Path
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_folder
 from ..experiment.programs import arkanoid
-from .arguments import add_trust
+from .arguments import MEASURED, add_trust, check_settings
 from .evaluate import group_by_experiment
 
 DEFAULT_OUT = "report.html"
@@ -33,9 +33,10 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     from ..experiment.runs import ModelFile
 
     out = Path(arguments.out)
-    if out.suffix not in (".html", ".md"):
+    if out.suffix.lower() not in (".html", ".md"):
         raise SettingsError(f"{out}: a report's name must end in .html or .md")
     check_folder(out)
+    check_settings(overrides, ("name", *MEASURED))
     models = [ModelFile.find(name, arguments.trust) for name in arguments.runs]
     if len(group_by_experiment(models, overrides)) > 1:
         raise SettingsError(

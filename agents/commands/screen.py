@@ -19,7 +19,7 @@ def require_screen(instead: str) -> None:
         pygame = import_pygame()
         init_display(pygame)
     except NoDisplayError as error:
-        raise SettingsError(f"{error}; {instead}") from None
+        raise SettingsError(f"{error.fact}; {instead}") from None
     # Whoever set the variable need not be who now waits for a window.
     if pygame.display.get_driver() in INVISIBLE and sys.stderr.isatty():
         asked = os.environ.get("SDL_VIDEODRIVER")

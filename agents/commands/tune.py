@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
+from ...envs.checks import counted
 from ..experiment.errors import SettingsError
 from ..experiment.files import cause, check_folder, check_new_folder
 from ..experiment.programs import arkanoid
@@ -75,7 +76,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
     jobs = usable_cores() if arguments.jobs is None else arguments.jobs
     study = open_study(folder, space, experiment.seed)
-    print(f"study    {folder}, {len(study.trials)} trials so far", flush=True)
+    print(f"study    {folder}, {counted(len(study.trials), 'trial')} so far", flush=True)
     search = Search(arguments.config, tuple(overrides), space, folder, experiment.seed)
     try:
         run_search(search, arguments.trials, jobs)

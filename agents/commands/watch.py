@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..experiment.files import quoted
 from ..experiment.programs import arkanoid
-from .arguments import add_level, add_model
+from .arguments import PLAYED, add_level, add_model, check_settings
 from .screen import require_screen
 
 _EPILOG = """\
@@ -28,6 +28,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Show games until the window is closed; return the exit status (130 after Ctrl-C)."""
     from ..experiment.runs import ModelFile
 
+    check_settings(overrides, PLAYED)
     model = ModelFile.find(arguments.model, arguments.trust)
     experiment = model.experiment(overrides)
     named = [Path(arguments.model)] if arguments.model else []

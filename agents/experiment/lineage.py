@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from ...envs.atomic import write_atomically
+from ...envs.checks import counted
 from ...envs.reading import read_limited
 from .errors import SettingsError
 from .files import cause
+from .packaged import find_agent
 from .runs import RunFolder
 
 MODEL = "model"
@@ -24,9 +26,11 @@ LARGEST_MODEL = 2**32  # bytes of a file
 def find_model(name: str) -> Path:
     """Return a model's file: that which is named, or the best or else the last one of a run.
 
+    The run may be a packaged agent's, by its name.
+
     Raises `SettingsError` if there is none.
     """
-    path = Path(name)
+    path = find_agent(name)
     run = RunFolder(path)
     candidates = (run.best, run.model) if path.is_dir() else (path,)
     for candidate in candidates:
@@ -71,10 +75,10 @@ def describe_lineage(lineage: Mapping[str, Any] | None) -> str | None:
     name, decisions, weights = lineage["name"], lineage["decisions"], lineage["weights"][:16]
     if lineage["kind"] == MODEL:
         return (
-            f"It began with the weights of {name}, trained for {decisions:,} decisions "
+            f"It began with the weights of {name}, trained for {counted(decisions, 'decision')} "
             f"(SHA-256 of the weights: {weights}...)."
         )
     return (
-        f"It began as a clone of the data set {name}, which has {decisions:,} decisions "
+        f"It began as a clone of the data set {name}, which has {counted(decisions, 'decision')} "
         f"(SHA-256 of the weights: {weights}...)."
     )

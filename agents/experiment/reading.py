@@ -6,6 +6,7 @@ own), or `dict[str, Any]`: a free table, whose keys are checked elsewhere.
 
 import difflib
 import re
+import shlex
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -292,7 +293,14 @@ def _explained(
             )
         return _unknown(key, known, origin)
     expected = known[key].expected if key in known else "a table"
-    return SettingsError(f"{origin}: {key!r} must be {expected}, not {_shown(value)}")
+    told = f"{origin}: {key!r} must be {expected}, not {_shown(value)}"
+    if (
+        origin == COMMAND_LINE
+        and expected.startswith("a list")
+        and isinstance(value, str | int | float)
+    ):
+        told += f"; a list is typed as {shlex.quote(to_toml_value([value]))}"
+    return SettingsError(told)
 
 
 def _unknown(key: str, known: Mapping[str, Setting], source: str) -> SettingsError:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import datetime
-from importlib import resources
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -15,10 +14,10 @@ from typing import Any
 from ...envs.atomic import remove_unfinished, write_atomically
 from ...envs.config import plain
 from ...envs.reading import read_limited
-from .. import pretrained
 from .errors import SettingsError
 from .files import cause
 from .notes import known_notes
+from .packaged import find_agent, packaged_agents
 from .packed import has_weights, holds_settings, read_packed
 from .programs import arkanoid
 from .provenance import describe_origin
@@ -249,17 +248,18 @@ class ModelFile:
 
     @classmethod
     def find(cls, name: str | None, trusted: bool = False) -> "ModelFile":
-        """Return the model in the folder of a run, a model file itself, or the packaged agent.
+        """Return the model in the folder of a run, a model file itself, or a packaged agent's.
 
         Args:
             name: of a folder: its best model by validation, or else its last one; of a model file
-                in such a folder: this one. None: the agent that comes with the package.
+                in such a folder: this one. One of `packaged_agents`: this one, unless there is such
+                a path; None: their `DEFAULT_AGENT`.
             trusted: whether the run is, see `RunFolder`.
 
         Raises:
             SettingsError: there is no model.
         """
-        path = pretrained_run() if name is None else Path(name)
+        path = find_agent(name)
         if path.is_dir():
             run = RunFolder.of(str(path), trusted)
             path = run.best if run.best.is_file() else run.model
@@ -267,8 +267,8 @@ class ModelFile:
                 raise SettingsError(f"{name}: no trained model there: the training has not ended")
         elif not path.is_file():
             raise SettingsError(
-                f"{name}: there is no such file or folder; give the folder of a run, or a model's "
-                f".zip file"
+                f"{name}: there is no such file or folder; give the folder of a run, a model's "
+                f".zip file, or the name of a packaged agent: {', '.join(packaged_agents())}"
             )
         else:
             run = RunFolder(path.parent, trusted)
@@ -350,11 +350,6 @@ def _check_settings(path: Path) -> None:
             f"{path}: the file does not say which game and network it is for: put the config.toml "
             f"of its run beside it"
         )
-
-
-def pretrained_run() -> Path:
-    """Return the folder of the agent that comes with the package."""
-    return Path(str(resources.files(pretrained)))
 
 
 def _new_folder(parent: Path, stem: str) -> Path:

@@ -8,6 +8,7 @@ from gymnasium.spaces import Discrete
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
+from ...envs.checks import counted
 from ..experiment.seeds import Purpose, spread_seed, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
@@ -110,7 +111,8 @@ class PeriodicValidation(BaseCallback):
         elif settings.stop_at and means["cleared"] >= settings.stop_at:
             self._stop(f"cleared rate {means['cleared']:.3f} reached at {step} decisions")
         elif settings.patience and state["worse"] >= settings.patience:
-            self._stop(f"{state['worse']} measurements without a better one at {step} decisions")
+            worse = counted(state["worse"], "measurement")
+            self._stop(f"{worse} without a better one at {step} decisions")
 
     def _play(self) -> dict[str, float]:
         deterministic = self._experiment.evaluation.deterministic

@@ -7,6 +7,7 @@ import numpy as np
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
+from ...envs.checks import counted
 from ...envs.config import Config
 from ..experiment.seeds import Purpose, spread_seed, spread_seeds
 from ..experiment.settings import BASELINES, Experiment
@@ -201,20 +202,29 @@ def as_tables(experiment: Experiment, comparison: Comparison, width: int) -> str
     parts = []
     for name, results in comparison.items():
         starts, heading = suites[name].starts, describe_suite(name, suites[name])
-        for statistic, title in TITLES.items():
+        # Of one number there is neither a mean nor an interval.
+        numbers = max(measured["score"].size for measured in results.values())
+        for statistic, title in TITLES.items() if numbers > 1 else [("mean", "")]:
             table = _aligned(summary_rows(results, statistic, ""), width)
-            parts.append(f"{heading}; {title} ± 95 % interval\n\n{table}")
+            parts.append(f"{heading}{_told(title, table)}\n\n{table}")
         if len(starts) > 1:
             table = _aligned(_cleared_rows(starts, results), width)
             parts.append(f"{name}: cleared rate by level\n\n{table}")
     return "\n\n".join(parts)
 
 
+def _told(title: str, table: str) -> str:
+    """Return what a table shows, for the end of its heading."""
+    return f"; {title}{' ± 95 % interval' if '±' in table else ''}" if title else ""
+
+
 def describe_suite(name: str, suite: Suite) -> str:
     """Return a heading for a suite's results."""
     if suite.whole_games:
-        return f"{name}: {suite.episodes} whole games"
-    return f"{name}: {len(suite.starts)} levels, {suite.episodes} episodes of each"
+        return f"{name}: {counted(suite.episodes, 'whole game')}"
+    levels = counted(len(suite.starts), "level")
+    of_each = " of each" if len(suite.starts) > 1 else ""
+    return f"{name}: {levels}, {counted(suite.episodes, 'episode')}{of_each}"
 
 
 def summary_rows(results: Mapping[str, Results], statistic: str, title: str) -> list[list[str]]:
@@ -293,11 +303,11 @@ def _policy_json(starts: Sequence[EpisodeStart], measured: Results) -> dict[str,
     return {
         "episodes": measured["cleared"].shape[1],
         "summary": {
-            key: {name: interval._asdict() for name, interval in summarise(measured[key]).items()}
+            key: {name: interval.as_json() for name, interval in summarise(measured[key]).items()}
             for key in COLUMNS
         },
         "levels": {
-            start.name: {key: level_interval(measured[key], level)._asdict() for key in COLUMNS}
+            start.name: {key: level_interval(measured[key], level).as_json() for key in COLUMNS}
             for level, start in enumerate(starts)
         },
     }

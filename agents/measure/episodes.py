@@ -7,6 +7,7 @@ import numpy as np
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
+from ...envs.checks import counted
 from ..adapter import GymnasiumVecEnv
 from .policy import Policy
 from .suites import WHOLE_GAMES, EpisodeStart
@@ -84,7 +85,8 @@ def begin_episodes(
     episodes = len(seeds)
     if episodes * len(starts) != worlds.num_envs:
         raise ValueError(
-            f"{worlds.num_envs} worlds for {len(starts)} levels times {episodes} episodes"
+            f"{counted(worlds.num_envs, 'world')} for {counted(len(starts), 'level')} times "
+            f"{counted(episodes, 'episode')}"
         )
     of_worlds = [seed for _ in starts for seed in seeds]
     observations: Any = None

@@ -3,6 +3,7 @@
 Written here, because SciPy's bootstrap cannot resample within strata: the levels of a suite.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -21,25 +22,39 @@ Statistic = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
 class Interval(NamedTuple):
-    """A mean, or another statistic, and the ends of its interval, in the unit of the data."""
+    """A mean, or another statistic, and the ends of its interval, in the unit of the data.
+
+    Of one sample there is no interval: then both ends are NaN.
+    """
 
     estimate: float
     low: float
     high: float
 
+    @property
+    def is_known(self) -> bool:
+        """Whether there is an interval."""
+        return not math.isnan(self.low)
+
     def __str__(self) -> str:
         """Return ``estimate ± half of the width`` with three significant digits or more."""
-        half = (self.high - self.low) / 2
         digits = 0 if abs(self.estimate) >= 100 else 1 if abs(self.estimate) >= 10 else 2
-        return f"{self.estimate:.{digits}f} ± {half:.{digits}f}"
+        half = f" ± {(self.high - self.low) / 2:.{digits}f}" if self.is_known else ""
+        return f"{self.estimate:.{digits}f}{half}"
+
+    def as_json(self) -> dict[str, float | None]:
+        """Return the three numbers by their names, as JSON takes them: ends may be None."""
+        return {
+            name: None if math.isnan(value) else value for name, value in self._asdict().items()
+        }
 
 
 def bootstrap_interval(samples: ArrayLike, seed: int = 0) -> Interval:
     """Return the mean of samples [n] with its 95 % percentile bootstrap interval.
 
     Its ends are percentiles of the means of 10 000 resamples with replacement (Efron and
-    Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13). Raises ValueError without
-    samples.
+    Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13). One sample has no
+    interval. Raises ValueError without samples.
     """
     values = np.asarray(samples, dtype=np.float64)
     if values.ndim != 1 or values.size == 0:
@@ -59,11 +74,15 @@ def stratified_interval(
 
     Every resample draws n samples of each stratum (a level), with replacement, and takes the
     statistic of all n × strata numbers together (Agarwal et al., Deep Reinforcement Learning at the
-    Edge of the Statistical Precipice, 2021). Raises ValueError without samples.
+    Edge of the Statistical Precipice, 2021). With n = 1 all resamples would be the same: there is
+    no interval. Raises ValueError without samples.
     """
     values = np.asarray(samples, dtype=np.float64)
     if values.ndim != 2 or values.size == 0:
         raise ValueError(f"samples must be numbers [n, strata], not of shape {values.shape}")
+    (point,) = statistic(values.reshape(1, -1))
+    if len(values) == 1:
+        return Interval(float(point), math.nan, math.nan)
     random = np.random.default_rng(seed)
     strata = np.arange(values.shape[1])
     at_once = max(1, _CHUNK // values.size)
@@ -74,7 +93,6 @@ def stratified_interval(
         drawn.append(statistic(values[chosen, strata].reshape(count, -1)))
     tail = (1 - CONFIDENCE) / 2
     low, high = np.quantile(np.concatenate(drawn), [tail, 1 - tail])
-    (point,) = statistic(values.reshape(1, -1))
     return Interval(float(point), float(low), float(high))
 
 

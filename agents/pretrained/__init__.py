@@ -1,1 +1,1 @@
-"""The run of the agent that comes with the package."""
+"""The runs of the agents that come with the package, each in a folder of its name."""

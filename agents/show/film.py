@@ -40,7 +40,7 @@ def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
     first = next(rest, None)
     if first is None:
         raise SettingsError(f"{path}: there is no picture to write")
-    write = _write_gif if path.suffix == ".gif" else _write_mp4
+    write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
     replace_atomically(
         path, lambda unfinished: write(unfinished, itertools.chain([first], rest), rate)
     )
@@ -48,7 +48,7 @@ def write_film(path: Path, pictures: Iterable[Picture], rate: float) -> None:
 
 def check_film(path: Path) -> None:
     """Raise `SettingsError` unless a film of this name can be written, as far as that shows now."""
-    if path.suffix not in RATES:
+    if path.suffix.lower() not in RATES:
         raise SettingsError(
             f"{path}: a film's name ends in {' or '.join(RATES)}; give it after the model, if any"
         )

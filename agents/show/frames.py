@@ -51,7 +51,7 @@ def film_policy(
     Raises:
         SettingsError, OSError: as `write_film`.
     """
-    smooth = path.suffix == ".mp4" and can_be_smooth(experiment)
+    smooth = path.suffix.lower() == ".mp4" and can_be_smooth(experiment)
     rate = frame_rate(experiment, smooth)
     count = int(min((seconds or experiment.evaluation.film_seconds) * rate, sys.maxsize // 2))
     frames = islice(play_frames(experiment, policy, start, smooth), max(1, count))

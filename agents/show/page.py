@@ -41,7 +41,7 @@ def write_page(path: Path, facts: Mapping[str, Any], pictures: Pictures) -> None
     Raises:
         OSError: a file cannot be written.
     """
-    if path.suffix == ".html":
+    if path.suffix.lower() == ".html":
         write_atomically(path, as_html(facts, pictures).encode())
         return
     folder = path.with_suffix("")

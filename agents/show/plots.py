@@ -151,10 +151,13 @@ def _measured(curve: Sequence[Mapping[str, Any]], key: str) -> NDArray[np.float6
 
 
 def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:
-    """Return the distances from the estimates to the intervals' ends, [2, n], at least zero."""
+    """Return the distances from the estimates to the intervals' ends, [2, n], at least zero.
+
+    Where there is no interval they are zero.
+    """
     distances = [
         [interval.estimate - interval.low for interval in intervals],
         [interval.high - interval.estimate for interval in intervals],
     ]
-    errors: NDArray[np.float64] = np.maximum(0.0, np.array(distances))
+    errors: NDArray[np.float64] = np.maximum(0.0, np.nan_to_num(np.array(distances)))
     return errors

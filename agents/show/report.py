@@ -2,6 +2,7 @@
 
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,7 @@ def describe_agent(
                 if (sentence := describe_lineage(model.run.read_notes().get("lineage")))
             }
         ),
-        "origin": list(_origin_rows(models[0].run.read_notes())),
+        "origin": list(_origin_rows([model.run.read_notes() for model in models])),
         "curves": len(curves),
         "suites": suites,
         "settings": to_toml(models[0].run.experiment()),
@@ -82,11 +83,17 @@ def _model_row(model: ModelFile) -> list[object]:
     ]
 
 
-def _origin_rows(notes: Mapping[str, Any]) -> Iterator[list[object]]:
-    """Yield one row for each version, and for each fact about the commit and the machine."""
+def _origin_rows(runs: Sequence[Mapping[str, Any]]) -> Iterator[list[object]]:
+    """Yield one row for each version, and for each fact about the commit and the machine.
+
+    Where the notes of the runs differ, the row has all their values.
+    """
     for table in ("versions", "git", "hardware"):
-        for key, value in (notes.get(table) or {}).items():
-            yield [f"{table}: {key}", value]
+        facts = [notes.get(table) or {} for notes in runs]
+        for key in dict.fromkeys(chain.from_iterable(facts)):
+            values = [known[key] for known in facts if key in known]
+            different = list(dict.fromkeys(map(str, values)))
+            yield [f"{table}: {key}", values[0] if len(different) == 1 else ", ".join(different)]
 
 
 def _suite_facts(name: str, suite: Suite, results: Mapping[str, Results]) -> dict[str, Any]:

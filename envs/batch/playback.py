@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import counted
 from ..state import LIFE_LOST
 from .batch import Batch
 from .recorder import Recorder
@@ -64,7 +65,8 @@ def replay_states(replay: Replay | str | PathLike[str]) -> Iterator[Batch]:
     for decision, command in enumerate(game.commands, 1):
         if recorder.over:
             raise ReplayDivergedError(
-                f"the game is over after {decision - 1} decisions instead of {len(game.commands)}"
+                f"the game is over after {counted(decision - 1, 'decision')} instead of "
+                f"{len(game.commands)}"
             )
         begin_next_life(batch)
         batch.commands[0] = command

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from ...physics.kernels.sealed import seal, unseal
 from ...version import __version__
 from ..atomic import write_atomically
+from ..checks import counted
 from ..config import Config
 from ..levels.plan import LevelPlan, check_layouts
 from ..reading import read_limited
@@ -248,8 +249,8 @@ class Replay:
         noted = 1 + max(0, result.decisions - over) // NOTE_EVERY
         if len(self.checksums) != noted + 1:  # and the last one
             raise ValueError(
-                f"the replay is corrupt: it has {len(self.checksums)} checksums, and a game of "
-                f"{result.decisions} decisions has {noted + 1}"
+                f"the replay is corrupt: it has {counted(len(self.checksums), 'checksum')}, and a "
+                f"game of {counted(result.decisions, 'decision')} has {noted + 1}"
             )
 
 

@@ -90,6 +90,7 @@ def seed_range(levels: str | range | Sequence[str]) -> range | None:
     Raises:
         ValueError: the range is empty, has a step, or goes beyond the legal seeds.
     """
+    given = levels
     if isinstance(levels, str):
         if levels in ("train", "test"):
             return TRAIN_SEEDS if levels == "train" else TEST_SEEDS
@@ -108,7 +109,7 @@ def seed_range(levels: str | range | Sequence[str]) -> range | None:
     if not levels or levels.step != 1 or levels.start < 0 or levels.stop - 1 > MAX_SEED:
         raise ValueError(
             f"levels must be a range of seeds from 0 to {MAX_SEED}, not empty and with step 1; "
-            f"got {levels!r}"
+            f"got {given!r}"
         )
     return levels
 

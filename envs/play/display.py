@@ -12,11 +12,26 @@ INVISIBLE = ("dummy", "offscreen")
 _ASKED = "SDL_VIDEODRIVER"  # SDL's own variable, which names the driver to take
 
 
+# What works without a screen, for programs. Gymnasium's `check_env` opens a window, too.
+_INSTEAD = (
+    'render_mode="rgb_array" needs none, SDL_VIDEODRIVER=dummy gives a window that nobody sees, '
+    "and check_env(env, skip_render_check=True) opens none"
+)
+
+
 class NoDisplayError(RuntimeError):
-    """There is no screen for a window here."""
+    """There is no screen for a window here.
+
+    Args:
+        reason: how one knows.
+
+    Attributes:
+        fact: the same as a sentence, without what works instead.
+    """
 
     def __init__(self, reason: str) -> None:
-        super().__init__(f"there is no display here for a window ({reason})")
+        self.fact = f"there is no display here for a window ({reason})"
+        super().__init__(f"{self.fact}; {_INSTEAD}")
 
 
 def init_display(pygame: Any) -> None:

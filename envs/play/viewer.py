@@ -13,6 +13,8 @@ from ..draw.picture import draw_world
 from .controls import Key
 from .pace import Pace
 
+HINT_SECONDS = 4.0  # how long the window shows the keys at first
+_HINT = ("SPACE: PAUSE   + -: SPEED", "R: FROM THE START   F: FULL SCREEN   ESC: QUIT")
 REPLAY_KEYS = "space: pause, + faster, - slower, R: from the start, F: full screen, Esc: quit"
 
 
@@ -34,6 +36,7 @@ class Viewer:
 
     def __init__(self, replay: Replay, speed: float, height: int) -> None:
         self._pace = Pace(replay.frames_per_second, speed)
+        self._hints = round(HINT_SECONDS * self._pace.frames_per_second)
         self.paused = False
         self.ended = False
         self._over = False
@@ -84,6 +87,7 @@ class Viewer:
         """Return the present picture, uint8 [height, width, 3]."""
         picture = draw_world(self._batch.worlds, self._batch.rules, 0, self._height)
         draw_overlay(picture, *self.text())
+        self._hints = max(0, self._hints - 1)
         return picture
 
     def text(self) -> tuple[str, tuple[str, ...]]:
@@ -96,7 +100,7 @@ class Viewer:
             keys = "SPACE: GO ON   R: FROM THE START"
             return "PAUSED", (keys, "+ -: SPEED   F: FULL SCREEN   ESC: QUIT")
         speed = self._pace.text()
-        return "", (speed,) if speed else ()
+        return "", (speed,) if speed else _HINT if self._hints else ()
 
     def _begin(self) -> None:
         self._states = replay_states(self._replay)

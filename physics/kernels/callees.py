@@ -12,6 +12,8 @@ What this uses of Numba, mostly undocumented, has its tests in
 
 # Numba's own methods have no types, of which pyright makes up some.
 # pyright: reportIncompatibleMethodOverride=false
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any, cast
 
 from numba.core.codegen import JITCodeLibrary
@@ -82,7 +84,12 @@ class CalleeDispatcher(CPUDispatcher):  # type: ignore[misc]
 class RootDispatcher(CPUDispatcher):  # type: ignore[misc]
     """A kernel for Python. Kernels that call it get its `callee` instead."""
 
-    callee: CalleeDispatcher
+    make_callee: Callable[[], CalleeDispatcher]
+
+    @cached_property
+    def callee(self) -> CalleeDispatcher:
+        """What other kernels call; most kernels are loaded ready, and need none."""
+        return self.make_callee()
 
     def get_call_template(self, arguments: Any, keywords: Any) -> Any:
         """Return how a kernel calls it."""

@@ -5,16 +5,14 @@ exception, in a crash or in wrong numbers. So the checksum is compared before an
 """
 
 import glob
-import os
 import pickle
 import shutil
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
-from .sealed import seal, unseal
+from .sealed import unseal, write_sealed
 
 _MARK = b"ARKACODE"
 _VERSION = 1
@@ -65,13 +63,7 @@ class CodeFiles:
         Raises:
             OSError: it cannot be written.
         """
-        path = self._path(key)
-        unfinished = path.with_name(f"{path.name}.{uuid4().hex[:16]}")
-        try:
-            unfinished.write_bytes(seal(_MARK, _VERSION, self._dump((key, data))))
-            os.replace(unfinished, path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        write_sealed(self._path(key), _MARK, _VERSION, self._dump((key, data)))
 
     def flush(self) -> None:
         """Delete the files."""

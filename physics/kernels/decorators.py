@@ -7,6 +7,7 @@ compiled or interpreted (``NUMBA_DISABLE_JIT=1``) on every machine.
 
 import os
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -74,7 +75,7 @@ def _compile(function: F, **options: bool) -> F:
         return function
     compiled: Any = _njit(function, **_ALWAYS, **WITHOUT_C_ENTRY, **options)
     compiled.__class__ = RootDispatcher
-    compiled.callee = _callee(function, options)
+    compiled.make_callee = partial(_callee, function, options)
     hold_signals(compiled)
     # The options are a part of the key: Numba's own does not hold them.
     compiler = f"{compiler_state()} {sorted(options.items())}"

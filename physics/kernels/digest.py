@@ -11,40 +11,55 @@ once, while it imports the kernels, and afterwards only compares the file's time
 it had then. So no clock matters: a file may be dated in the future.
 """
 
-import ast
 import hashlib
+import os
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 PACKAGE = __name__.rpartition(".physics.")[0]
-_PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
+_PACKAGE_FOLDER = str(Path(__file__).resolve().parents[2])
 
 
 # These decide where machine code is kept and what the user is told, not what the machine code is.
 _WITHOUT_INFLUENCE = frozenset(
-    Path(__file__).resolve().with_name(name)
+    str(Path(__file__).resolve().with_name(name))
     for name in ("cache.py", "code_files.py", "messages.py", "sealed.py")
 )
+
+# Import statements, found without a parser, which would take most of a warm start. The patterns
+# also find what looks like one in a text or comment, inside of another one too: a file too many in
+# a digest does no harm. They miss none.
+_SPACE = r"(?:[ \t\f]|\\\n)"
+_NAMES = rf"""(?:
+    {_SPACE}*\( (?P<bracketed> (?: [^()#] | \#[^\n]*\n )* )
+    | (?P<open> (?: [^\n;#\\] | \\\n )* )
+)"""
+_FROM = re.compile(
+    rf"\bfrom\b (?= (?P<module> (?: [\w.] | {_SPACE} )*? ) \bimport\b {_NAMES} )", re.VERBOSE
+)
+_IMPORT = re.compile(rf"\bimport\b (?= {_NAMES} )", re.VERBOSE)
+_COMMENT = re.compile(r"#[^\n]*")
 
 
 @cache
 def digest(file: Path, compiler: str) -> str:
     """Return 16 hexadecimal digits for a source file, what it imports, and the compiler's state."""
     result = hashlib.sha256(compiler.encode())
-    for source in sorted(_import_closure(file)):
+    for source in sorted(_import_closure(str(file))):
         result.update(_read(source).digest)
     return result.hexdigest()[:16]
 
 
 def is_edited(file: Path) -> bool:
     """Return whether the file, or one that it imports, changed after this process read it."""
-    return any(_stamp(source) != _read(source).stamp for source in _import_closure(file))
+    return any(_stamp(source) != _read(source).stamp for source in _import_closure(str(file)))
 
 
 @cache
-def _import_closure(file: Path) -> frozenset[Path]:
+def _import_closure(file: str) -> frozenset[str]:
     """Return the file and all files of the package that it imports, directly or not."""
     found = {file}
     frontier = [file]
@@ -60,70 +75,64 @@ class _Source(NamedTuple):
 
     stamp: tuple[int, int] | None
     digest: bytes
-    imports: frozenset[Path]
+    imports: frozenset[str]
 
 
 @cache
-def _read(file: Path) -> _Source:
+def _read(file: str) -> _Source:
     stamp = _stamp(file)
-    content = file.read_bytes()
+    content = Path(file).read_bytes()
     return _Source(stamp, hashlib.sha256(content).digest(), _imported_files(file, content))
 
 
-def _stamp(file: Path) -> tuple[int, int] | None:
+def _stamp(file: str) -> tuple[int, int] | None:
     """Return a file's time in nanoseconds and its size in bytes, None if it is gone."""
     try:
-        status = file.stat()
+        status = os.stat(file)
     except OSError:
         return None
     return status.st_mtime_ns, status.st_size
 
 
-def _imported_files(file: Path, content: bytes) -> frozenset[Path]:
+def _imported_files(file: str, content: bytes) -> frozenset[str]:
     """Return the files of the package that one file names in its import statements."""
+    text = content.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
     found = set()
-    for node in _statements(ast.parse(content).body):
-        for folder, dotted in _imported_names(node, file):
-            path = folder.joinpath(*dotted.split("."))
-            found |= {path.with_name(f"{path.name}.py"), path / "__init__.py"}
-    return frozenset(path for path in found - _WITHOUT_INFLUENCE if path.is_file())
+    for folder, dotted in _imported_names(text, file):
+        path = os.path.join(folder, *dotted.split(".")) if dotted else folder
+        found |= {f"{path}.py", os.path.join(path, "__init__.py")}
+    return frozenset(path for path in found - _WITHOUT_INFLUENCE if os.path.isfile(path))
 
 
-def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """Yield all statements; `ast.walk` would look into all expressions, too."""
-    for statement in body:
-        yield statement
-        for part in (
-            statement,
-            *getattr(statement, "handlers", ()),
-            *getattr(statement, "cases", ()),
-        ):
-            for name in ("body", "orelse", "finalbody"):
-                yield from _statements(getattr(part, name, []))
-
-
-def _imported_names(node: ast.AST, file: Path) -> Iterator[tuple[Path, str]]:
-    """Yield what an import statement may name: a folder, and dotted names below it.
+def _imported_names(text: str, file: str) -> Iterator[tuple[str, str]]:
+    """Yield what the import statements of a source may name: a folder, and dotted names below it.
 
     Inside the package every import is relative; kernels outside of it name the package.
     """
-    if isinstance(node, ast.ImportFrom) and node.level:
-        folder = file.parents[node.level - 1]
-        dotted = node.module or ""
-    elif isinstance(node, ast.ImportFrom) and node.module:
-        top, _, dotted = node.module.partition(".")
-        if top != PACKAGE:
-            return
-        folder = _PACKAGE_FOLDER
-    elif isinstance(node, ast.Import):
-        for alias in node.names:
-            top, _, dotted = alias.name.partition(".")
+    for found in _FROM.finditer(text):
+        module = re.sub(r"[\s\\]", "", found["module"])
+        dotted = module.lstrip(".")
+        if dotted == module:
+            top, _, dotted = module.partition(".")
+            if top != PACKAGE:
+                continue
+            folder = _PACKAGE_FOLDER
+        else:
+            folder = file
+            for _ in range(len(module) - len(dotted)):
+                folder = os.path.dirname(folder)
+        yield folder, dotted
+        # `from . import x` and `from .package import x` may name modules, too.
+        for name in _names(found):
+            yield folder, f"{dotted}.{name}".strip(".")
+    for found in _IMPORT.finditer(text):
+        for name in _names(found):
+            top, _, dotted = name.partition(".")
             if top == PACKAGE:
                 yield _PACKAGE_FOLDER, dotted
-        return
-    else:
-        return
-    yield folder, dotted
-    # `from . import x` and `from .package import x` may name modules, too.
-    for alias in node.names:
-        yield folder, f"{dotted}.{alias.name}".strip(".")
+
+
+def _names(found: re.Match[str]) -> list[str]:
+    """Return the names, perhaps dotted, behind an `import`; what they are called here, too."""
+    text = _COMMENT.sub("", found["bracketed"] or found["open"] or "")
+    return re.findall(r"\w[\w.]*", re.sub(rf"{_SPACE}*\.{_SPACE}*", ".", text))

@@ -16,6 +16,8 @@ has one test for each part, which says what is missing and where it is used:
 ``UserProvidedCacheLocator``        to read a folder that may not be written
 ``FunctionCache._impl``             to name the files of machine code
 ``FunctionCache._cache_file``       to put our files in place of Numba's
+``FunctionCache._load_overload``    to load them before Numba knows how to compile
+``rtsys.initialize``                the same
 ``serialize.dumps``                 to write them
 ``event`` ``numba:compile``         to notice that the compiler is at work
 ``intrinsic, arrayobj``             to make arrays that count no references
@@ -36,6 +38,7 @@ from numba.core import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs to this Numba
 from numba.core.extending import intrinsic
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 from numba.np.arrayobj import make_array, populate_array
 
@@ -143,9 +146,14 @@ class KernelCache(FunctionCache):  # type: ignore[misc]
         self._cache_file = CodeFiles(Path(self.cache_path), self._impl.filename_base, dumps)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Load the machine code for one signature; None if there is none that can be read."""
+        """Load the machine code for one signature; None if there is none that can be read.
+
+        Numba would first load all that it can compile, which takes longer than everything else.
+        Code that is ready needs Numba's run time at most.
+        """
+        rtsys.initialize(target_context)
         with suppress(OSError):
-            return super().load_overload(sig, target_context)
+            return self._load_overload(sig, target_context)
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -187,13 +195,16 @@ events.register("numba:compile", CompilerListener())
 
 @intrinsic
 def borrowed_view(typing_context: Any, block: Any, start: Any, count: Any, dtype: Any) -> Any:
-    """Return an array that looks into a block of bytes and owns no part of it."""
+    """Return an array that looks into a block of bytes, or its address, and owns no part of it."""
     array_type = types.Array(dtype.dtype, 1, "C")
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        source = make_array(signature.args[0])(context, builder, arguments[0])
         view = make_array(array_type)(context, builder)
-        address = builder.gep(source.data, [arguments[1]])
+        if isinstance(block, types.Integer):
+            first = builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
+        else:
+            first = make_array(signature.args[0])(context, builder, arguments[0]).data
+        address = builder.gep(first, [arguments[1]])
         size = context.get_abi_sizeof(context.get_data_type(array_type.dtype))
         size = context.get_constant(types.intp, getattr(array_type.dtype, "size", size))
         populate_array(
@@ -207,6 +218,17 @@ def borrowed_view(typing_context: Any, block: Any, start: Any, count: Any, dtype
         return view._getvalue()
 
     return array_type(block, types.intp, types.intp, dtype), generate
+
+
+@intrinsic
+def block_address(typing_context: Any, block: Any) -> Any:
+    """Return the address of a block of bytes."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.ptrtoint(data, context.get_value_type(types.intp))
+
+    return types.intp(block), generate
 
 
 @intrinsic

@@ -4,8 +4,11 @@ The header is eight bytes that say what it is, then as unsigned little-endian nu
 version (2 bytes), the CRC-32 of the content (4) and its length (8). The content follows.
 """
 
+import os
 import struct
 import zlib
+from pathlib import Path
+from uuid import uuid4
 
 _HEADER = struct.Struct("<8sHIQ")
 
@@ -13,6 +16,20 @@ _HEADER = struct.Struct("<8sHIQ")
 def seal(mark: bytes, version: int, content: bytes) -> bytes:
     """Return a content with its header; mark: eight bytes that say what it is."""
     return _HEADER.pack(mark, version, zlib.crc32(content), len(content)) + content
+
+
+def write_sealed(path: Path, mark: bytes, version: int, content: bytes) -> None:
+    """Write what `seal` returns to a file. Other processes see the whole file or none.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    unfinished = path.with_name(f"{path.name}.{uuid4().hex[:16]}")
+    try:
+        unfinished.write_bytes(seal(mark, version, content))
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def unseal(what: str, mark: bytes, version: int, sealed: bytes) -> memoryview:

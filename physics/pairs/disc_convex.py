@@ -7,6 +7,7 @@ from ..shapes.records import EdgeRecord, Edges
 from ..shapes.vectors import unit_vector
 from .disc_face import sweep_disc_face
 from .results import NO_CONTACT, NO_IMPACT
+from .touching import axis_times, closing_speed, margin_along
 
 
 @kernel
@@ -48,7 +49,14 @@ def nearest_corner(edge: EdgeRecord, dx: float, dy: float) -> tuple[bool, float,
 
 @kernel
 def contact_disc_convex(
-    radius: float, edges: Edges, first: int, count: int, dx: float, dy: float
+    radius: float,
+    edges: Edges,
+    first: int,
+    count: int,
+    dx: float,
+    dy: float,
+    margin_x: float,
+    margin_y: float,
 ) -> tuple[bool, float, float, float, float, float]:
     """Return (found, normal_x, normal_y, depth, point_x, point_y).
 
@@ -71,7 +79,7 @@ def contact_disc_convex(
                 normal_x = corner_normal_x
                 normal_y = corner_normal_y
     depth = radius - separation
-    if depth <= 0.0:
+    if depth <= margin_along(normal_x, normal_y, margin_x, margin_y):
         return NO_CONTACT
     middle = radius - 0.5 * depth
     return True, normal_x, normal_y, depth, normal_x * middle, normal_y * middle
@@ -79,9 +87,9 @@ def contact_disc_convex(
 
 @kernel
 def _sweep_edge(
-    radius: float, edge: EdgeRecord, dx: float, dy: float, vx: float, vy: float
-) -> tuple[float, float, float]:
-    """Return (time, normal_x, normal_y) for the edge that the disc meets, if any."""
+    radius: float, edge: EdgeRecord, dx: float, dy: float, vx: float, vy: float, margin: float
+) -> tuple[float, float, float, bool]:
+    """Return (time, normal_x, normal_y, is_corner) for the edge that the disc meets, if any."""
     # The face's own axes: across it toward the region, and along it, to the left of that.
     across_x = -edge.normal_x
     across_y = -edge.normal_y
@@ -100,8 +108,60 @@ def _sweep_edge(
         high,
         across_x * vx + across_y * vy,
         along_x * vx + along_y * vy,
+        margin,
     )
-    return time, across * across_x + along * along_x, across * across_y + along * along_y
+    normal_x = across * across_x + along * along_x
+    normal_y = across * across_y + along * along_y
+    return time, normal_x, normal_y, along != 0.0
+
+
+@kernel
+def _edge_times(
+    radius: float,
+    edge: EdgeRecord,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[float, float, float]:
+    """Return (touches, sinks, parts) of a disc and the line of an edge, as of `axis_times`."""
+    margin = margin_along(edge.normal_x, edge.normal_y, margin_x, margin_y)
+    closing = closing_speed(-edge.normal_x, -edge.normal_y, vx, vy, margin)
+    return axis_times(separation_from_edge(edge, dx, dy) - radius, closing, margin)
+
+
+@kernel
+def _region_times(
+    radius: float,
+    edges: Edges,
+    first: int,
+    count: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[float, int, float, float]:
+    """Return (touches, last, sinks, parts) of a disc and the lines of all edges together.
+
+    ``last`` is the edge whose line is touched last; it is -1 if the disc overlaps all of them.
+    """
+    touches, sinks, parts = -1.0, -1.0, math.inf
+    last = -1
+    for index in range(first, first + count):
+        edge_touches, edge_sinks, edge_parts = _edge_times(
+            radius, edges[index], dx, dy, vx, vy, margin_x, margin_y
+        )
+        if edge_touches == math.inf:
+            return math.inf, index, math.inf, -math.inf
+        if edge_touches > touches:
+            touches, last = edge_touches, index
+        sinks = max(sinks, edge_sinks)
+        parts = min(parts, edge_parts)
+    return touches, last, sinks, parts
 
 
 @kernel
@@ -115,31 +175,111 @@ def sweep_disc_convex(
     vx: float,
     vy: float,
     duration: float,
+    margin_x: float,
+    margin_y: float,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y); the region's body starts at (dx, dy), moves (vx, vy)."""
-    enter = -1.0
-    last = -1
-    for index in range(first, first + count):
-        edge = edges[index]
-        gap = separation_from_edge(edge, dx, dy) - radius
-        if gap >= 0.0:
-            approach = edge.normal_x * vx + edge.normal_y * vy
-            if approach <= 0.0:
-                return NO_IMPACT
-            time = gap / approach
-            if time > enter:
-                enter, last = time, index
-    if enter > duration:
+    enter, last, sinks, parts = _region_times(
+        radius, edges, first, count, dx, dy, vx, vy, margin_x, margin_y
+    )
+    if enter == math.inf or enter > duration:
         return NO_IMPACT
     if last < 0:
         found, normal_x, normal_y, _, _, _ = contact_disc_convex(
-            radius, edges, first, count, dx, dy
+            radius, edges, first, count, dx, dy, margin_x, margin_y
         )
         if found:
             return 0.0, normal_x, normal_y
         # The disc reaches every face's line but not the region: it is beyond a corner.
         last, _ = farthest_edge(edges, first, count, dx, dy)
-    time, normal_x, normal_y = _sweep_edge(radius, edges[last], dx, dy, vx, vy)
+    time, normal_x, normal_y, is_corner = _sweep_edge(
+        radius, edges[last], dx, dy, vx, vy, margin_x + margin_y
+    )
     if time > duration:
         return NO_IMPACT
+    if is_corner and sinks >= parts and sinks > enter >= 0.0:
+        # It passes before it overlaps the region by more than the margin.
+        return NO_IMPACT
     return time, normal_x, normal_y
+
+
+@kernel
+def _turn(one: EdgeRecord, other: EdgeRecord) -> float:
+    """Return the sine of the angle from one edge's normal to another's, counterclockwise."""
+    sine: float = one.normal_x * other.normal_y - one.normal_y * other.normal_x
+    return sine
+
+
+@kernel
+def _corner_normal(
+    edges: Edges,
+    first: int,
+    count: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+    time: float,
+) -> tuple[float, float, bool]:
+    """Return (x, y, is_corner): the outward normal at which a point meets a region at a time.
+
+    Of a face it is the face's. Of a corner it is what a small disc meets that flies at the corner:
+    against its motion, but no further turned than the normals of the corner's edges.
+    """
+    x, y, _ = unit_vector(vx, vy)
+    # Of the edges that are met, with normals within a right angle of (x, y), the nearest on either
+    # side.
+    right, left, met = -1, -1, 0
+    for index in range(first, first + count):
+        edge = edges[index]
+        _, sinks, _ = _edge_times(0.0, edge, dx, dy, vx, vy, margin_x, margin_y)
+        if sinks < time:
+            continue
+        met += 1
+        turn = x * edge.normal_y - y * edge.normal_x
+        if turn <= 0.0 and (right < 0 or _turn(edges[right], edge) > 0.0):
+            right = index
+        if turn >= 0.0 and (left < 0 or _turn(edges[left], edge) < 0.0):
+            left = index
+    if right >= 0 and left >= 0 and right != left:
+        return x, y, True
+    edge = edges[max(right, left)]
+    return edge.normal_x, edge.normal_y, met > 1
+
+
+@kernel
+def sweep_point_convex(
+    edges: Edges,
+    first: int,
+    count: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    duration: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[float, float, float]:
+    """Return what `sweep_disc_convex` returns, for a disc of radius 0.
+
+    It enters through a corner, too, and one that only grazes a corner misses: there, the time in
+    the region decides.
+    """
+    time, _, sinks, parts = _region_times(
+        0.0, edges, first, count, dx, dy, vx, vy, margin_x, margin_y
+    )
+    if time < 0.0:
+        _, normal_x, normal_y, _, _, _ = contact_disc_convex(
+            0.0, edges, first, count, dx, dy, margin_x, margin_y
+        )
+        return 0.0, normal_x, normal_y
+    if time >= parts or time > duration:
+        return NO_IMPACT
+    normal_x, normal_y, is_corner = _corner_normal(
+        edges, first, count, dx, dy, vx, vy, margin_x, margin_y, time
+    )
+    if is_corner and sinks >= parts:
+        return NO_IMPACT
+    return time, -normal_x, -normal_y

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from ..body import Body, FloatArray
 from ..errors import InseparableError
-from .records import Clock
+from .lookup.inside import inside_blocks, pairs_inside
+from .records import Clock, Motion, Plan
 from .setup import BodySpec, ByteArray, build_setup, inseparable_pair
 from .states import Stepper
 
@@ -59,10 +59,6 @@ class Scene:
         """Return x, y, vx, vy of all bodies, float64 [n, 4], a copy."""
         return np.array(self.motions, np.float64).reshape(-1, 4)
 
-    def forget_inside(self, index: int) -> None:
-        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        self.inside = {pair for pair in self.inside if index not in pair}
-
 
 class Built:
     """A world as kernels step it, made from a scene.
@@ -95,16 +91,22 @@ class Built:
         self.states: ByteArray = self.setup.new_state(1)
         self.motions: FloatArray = self.setup.motion_view(self.states)[0]
         self.motions[:] = self._first_motions[self.setup.moving]
-        self.setup.motions_after_step_view(self.states)[0] = self.motions
-        self._inside: npt.NDArray[np.uint8] = self.setup.inside_view(self.states)[0]
-        for row, sensor in enumerate(self.setup.sensing.tolist()):
-            for body in range(len(scene.specs)):
-                self._inside[row, body] = (sensor, body) in scene.inside
+        for part in ("shown_after_step", "motions"):
+            self.setup.records(self.states, part, Motion)[0] = self.motions.view(Motion)[:, 0]
+        plans = self.setup.records(self.states, "plans", Plan)[0]
+        plans["at"], plans["at_low"] = scene.time
+        plans["speed"] = np.abs(self.motions[:, 2:]).sum(axis=1)
+        plans["fresh"] = 1
         self.clock = self.states[0, : Clock.itemsize].view(Clock)
         self.clock["time"], self.clock["time_low"] = scene.time
         self.clock["capped"] = scene.capped
+        self.clock["fresh"] = 1
         self.warned = scene.capped
-        self.stepper = Stepper(self.setup, self.states)
+        pairs = np.array(sorted((body, sensor) for sensor, body in scene.inside), np.int64)
+        blocks = inside_blocks(
+            [pairs.reshape(-1, 2)[:, ::-1]], len(scene.specs), len(self.setup.sensing) > 0
+        )
+        self.stepper = Stepper(self.setup, self.states, blocks)
 
     @property
     def capped(self) -> int:
@@ -117,16 +119,10 @@ class Built:
         motions[self.setup.moving] = self.motions
         return motions
 
-    def forget_inside(self, index: int) -> None:
-        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        self._inside[:, index] = 0
-        self._inside[self.setup.sensing == index] = 0
-        self.clock["planned"] = 0
-
     def write_back(self, scene: Scene) -> None:
         """Write into the scene what stepping has changed."""
         scene.motions = self.all_motions().tolist()
-        rows, bodies = np.nonzero(self._inside)
-        scene.inside = set(zip(self.setup.sensing[rows].tolist(), bodies.tolist(), strict=True))
+        (pairs,) = pairs_inside(self.stepper.insides)
+        scene.inside = {(sensor, body) for sensor, body in pairs.tolist()}
         scene.time = (float(self.clock["time"][0]), float(self.clock["time_low"][0]))
         scene.capped = self.capped

@@ -2,17 +2,18 @@
 
 from ..kernels import kernel
 from .clock_time import is_earlier
+from .courses import is_short_way, move_to
 from .events import contact_point, enter_sensor, has_room, leave_sensors, write_event
-from .grid import enter, leave
+from .lookup.boxes import fit_here, next_margin
 from .meetings.changes import count_hit, plan_after_hit
 from .meetings.gathering import meets_alone
 from .meetings.outcome import meet_together
 from .meetings.pair import bounce_pair, velocity_of
-from .prediction import inverse_mass_of, is_inside, is_short_way, move_to, predict, slowest_hit
-from .records import CROSS_X, HIT, LOOK, MEET, Hits
+from .meetings.passing import inverse_mass_of, slowest_hit
+from .prediction import is_inside, predict
+from .records import HIT, LOOK, MEET, Hits
 from .view import (
     WorldView,
-    motions_of,
     moving_of,
     plans_of,
     progress_of,
@@ -29,8 +30,8 @@ def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> in
 
     It always ends, whatever the numbers are. Every meeting counts as a hit of a body that is not
     yet held, and no body has more of these than `max_hits` in each of the three stages before.
-    Between two of them a body crosses each border and enters each sensor at most once, and it looks
-    again at most once.
+    Between two of them a body enters each sensor at most once, looks again at most once, and leaves
+    boxes of which each is twice as large as the one before.
     """
     progress = progress_of(world)
     plans = plans_of(world)
@@ -45,7 +46,7 @@ def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> in
         if plan.kind == LOOK:
             _look(world, slot)
         elif plan.kind != MEET:
-            _cross_border(world, slot)
+            _leave_box(world, slot)
         elif _is_sensed(world, slot):
             count = _enter(world, hits, count, world_index, slot)
         elif meets_alone(world, slot):
@@ -57,17 +58,13 @@ def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> in
 
 
 @kernel
-def _cross_border(world: WorldView, slot: int) -> None:
-    """Move a body to the next cell of the grid, as it planned."""
+def _leave_box(world: WorldView, slot: int) -> None:
+    """Let a body leave its box and get another one, as it planned."""
     plan = plans_of(world)[slot]
-    motion = motions_of(world)[slot]
-    leave(world, slot)
-    if plan.kind == CROSS_X:
-        plan.column += 1 if motion.vx > 0.0 else -1
-    else:
-        plan.row += 1 if motion.vy > 0.0 else -1
-    enter(world, slot)
-    predict(world, slot, plan.time, plan.time_low, False)
+    now, now_low = plan.time, plan.time_low
+    margin = next_margin(world, slot)
+    fit_here(world, slot, now, now_low, margin)
+    predict(world, slot, now, now_low, False)
 
 
 @kernel
@@ -94,10 +91,13 @@ def _enter(world: WorldView, hits: Hits, count: int, world_index: int, slot: int
     plan = plans_of(world)[slot]
     a, b = moving_of(world)[slot], plan.partner
     now, now_low = plan.time, plan.time_low
+    normal_x, normal_y = plan.normal_x, plan.normal_y
+    if a > b:  # Either of the two may have planned it. No bit depends on which.
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     # If both move, both may have planned it: the second one finds it done.
     if not is_inside(world, traits_of(world)[a], a, traits_of(world)[b], b):
         count = enter_sensor(
-            world, hits, count, world_index, a, b, now, now_low, plan.normal_x, plan.normal_y
+            world, hits, count, world_index, a, b, now, now_low, normal_x, normal_y
         )
     predict(world, slot, now, now_low, False)
     return count
@@ -110,6 +110,8 @@ def _meet(world: WorldView, hits: Hits, count: int, world_index: int, slot: int)
     a, b = moving_of(world)[slot], plan.partner
     now, now_low = plan.time, plan.time_low
     normal_x, normal_y = plan.normal_x, plan.normal_y
+    if a > b:  # Either of the two may have planned it. No bit depends on which.
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     count = leave_sensors(world, hits, count, world_index, a, now, now_low)
     count = leave_sensors(world, hits, count, world_index, b, now, now_low)
     for body in (a, b):

@@ -7,14 +7,17 @@ from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..tolerances import NO_DEPTH, RELAX_ROUNDS
+from ..tolerances import RELAX_ROUNDS
+from .courses import margins_of, motion_at, move_to
 from .events import enter_sensor, has_room, write_event
-from .grid import enter_all, find_near
+from .lookup.boxes import first_margin, fit, follow
+from .lookup.neighbours import find_near, sort_items
 from .meetings.pair import bounce_pair
-from .prediction import is_inside, motion_at
+from .prediction import is_inside
 from .records import HIT, Hits
 from .view import (
     WorldView,
+    boxes_of,
     clock_of,
     edges_of,
     motions_of,
@@ -31,27 +34,92 @@ from .view import (
 def relax_overlaps(world: WorldView) -> bool:
     """Move overlapping bodies apart, pair by pair; return whether anything moved.
 
-    Moving one pair apart may push it into others. So this repeats until no pair overlaps, or, where
-    there is not enough room for all, for a limited number of rounds. The overlaps that remain are
-    noted in the progress as crowded, and the next step continues with them.
+    Moving one pair apart may push it into others: what was moved is fresh, too. So this repeats
+    until no fresh body overlaps another one, or, where there is not enough room for all, for a
+    limited number of rounds. The overlaps that remain are noted in the progress as crowded, and the
+    next step continues with them.
     """
+    plans = plans_of(world)
     has_moved = False
     for _ in range(RELAX_ROUNDS):
         is_done = True
-        for slot in range(plans_of(world).shape[0]):
-            body = moving_of(world)[slot]
-            for index in range(find_near(world, slot, True)):
-                other = near_of(world)[index]
-                found, normal_x, normal_y, depth, x, y = _solid_contact(world, body, other)
-                if found and depth > NO_DEPTH * (abs(x) + abs(y) + depth):
-                    _move_apart(world, body, other, normal_x, normal_y, depth)
-                    is_done = False
+        for slot in range(plans.shape[0]):
+            if plans[slot].fresh and _relax_body(world, slot):
+                is_done = False
         if is_done:
             return has_moved
         has_moved = True
-        enter_all(world)
     progress_of(world).crowded = 1
     return has_moved
+
+
+@kernel
+def _relax_body(world: WorldView, slot: int) -> bool:
+    """Move a fresh body out of others; return whether there was an overlap."""
+    traits, plans, near = traits_of(world), plans_of(world), near_of(world)
+    body = moving_of(world)[slot]
+    is_moved = False
+    for index in range(_find_close(world, slot)):
+        other = near[index]
+        theirs = traits[other].slot
+        if 0 <= theirs < slot and plans[theirs].fresh:
+            continue  # it was its turn
+        found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
+        if found:
+            _begin_anew(world, body)
+            _begin_anew(world, other)
+            _move_apart(world, body, other, normal_x, normal_y, depth)
+            _follow(world, body)
+            _follow(world, other)
+            is_moved = True
+    return is_moved
+
+
+@kernel
+def _find_close(world: WorldView, slot: int) -> int:
+    """Write the bodies into ``near`` that are in a body's box now; return how many.
+
+    Unlike `find_near`, this does not depend on the boxes of others, and so not on history.
+    """
+    clock, shapes, near = clock_of(world), shapes_of(world), near_of(world)
+    box = boxes_of(world)[slot]
+    count = 0
+    for index in range(find_near(world, slot, False)):
+        other = near[index]
+        trait = traits_of(world)[other]
+        x, y, _, _ = motion_at(world, other, clock.time, clock.time_low)
+        shape = shapes[trait.collider]
+        if (
+            x + shape.lower_x <= box.upper_x
+            and x + shape.upper_x >= box.lower_x
+            and y + shape.lower_y <= box.upper_y
+            and y + shape.upper_y >= box.lower_y
+        ):
+            near[count] = other
+            count += 1
+    sort_items(near, count)
+    return count
+
+
+@kernel
+def _begin_anew(world: WorldView, body: int) -> None:
+    """Let a body with a mass begin a new course here and now, because it is moved."""
+    trait = traits_of(world)[body]
+    if trait.inverse_mass > 0.0:
+        move_to(world, body, clock_of(world).time, clock_of(world).time_low)
+        if not plans_of(world)[trait.slot].fresh:
+            motion = motions_of(world)[trait.slot]
+            plans_of(world)[trait.slot].fresh = 1
+            fit(world, trait.slot, motion.x, motion.y, first_margin(world, trait.slot))
+
+
+@kernel
+def _follow(world: WorldView, body: int) -> None:
+    """Let the box of a body follow it, if it was moved."""
+    trait = traits_of(world)[body]
+    if trait.inverse_mass > 0.0:
+        motion = motions_of(world)[trait.slot]
+        follow(world, trait.slot, motion.x, motion.y)
 
 
 @kernel
@@ -73,13 +141,10 @@ def _contact_at(
     """Return the contact of two bodies at a time, with the point in the world's coordinates."""
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
+    first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
+    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
     found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes_of(world),
-        edges_of(world),
-        traits_of(world)[a].collider,
-        traits_of(world)[b].collider,
-        bx - ax,
-        by - ay,
+        shapes_of(world), edges_of(world), first, second, bx - ax, by - ay, margin_x, margin_y
     )
     return found, normal_x, normal_y, depth, ax + x, ay + y
 
@@ -113,6 +178,7 @@ def resolve_overlaps(world: WorldView, hits: Hits, count: int, world_index: int)
     while progress.next_slot < plans_of(world).shape[0]:
         body = moving_of(world)[progress.next_slot]
         near = find_near(world, progress.next_slot, True)
+        sort_items(near_of(world), near)
         while progress.next_near < near:
             if not has_room(world, hits, count):
                 return count

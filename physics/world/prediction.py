@@ -8,28 +8,21 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
-from ..shapes.records import Edges, ShapeRecord
-from ..tolerances import MOST_RESTS, NO_APPROACH, NO_WAY, PARALLEL, SAME_POINT, SAME_TIME, SLIDE
-from .clock_time import elapsed, later
-from .grid import find_near, time_to_cross
-from .records import (
-    CROSS_X,
-    CROSS_Y,
-    CRUSHED,
-    FREE,
-    HELD,
-    LOOK,
-    MEET,
-    NOTHING,
-    PlanRecord,
-    TraitRecord,
-)
+from ..pairs.touching import margin_along
+from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
+from .clock_time import elapsed, is_earlier, later
+from .courses import margins_of, motion_at, place_at, short_way
+from .lookup.boxes import time_to_leave
+from .lookup.inside import find_inside
+from .lookup.neighbours import find_near
+from .lookup.tree import NO_ONE
+from .meetings.passing import has_reached, passes_by
+from .meetings.ties import is_straighter
+from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
     edges_of,
-    header_of,
-    inside_of,
     motions_of,
     moving_of,
     near_of,
@@ -43,191 +36,13 @@ from .view import (
 
 
 @kernel
-def stage_of(world: WorldView, slot: int) -> int:
-    """Return how far a body has used up its hits of this step: FREE for a static one (-1)."""
-    return FREE if slot < 0 else int(plans_of(world)[slot].stage)
-
-
-@kernel
-def inverse_mass_of(world: WorldView, body: int) -> float:
-    """Return a body's inverse mass for hits: 0 also if it is held where it is."""
-    trait = traits_of(world)[body]
-    return 0.0 if stage_of(world, trait.slot) >= HELD else float(trait.inverse_mass)
-
-
-@kernel
-def has_reached(world: WorldView, a: int, b: int, stage: int) -> bool:
-    """Return whether those of two bodies that have a mass have all reached a stage."""
-    traits = traits_of(world)
-    for body in (a, b):
-        if traits[body].inverse_mass > 0.0 and stage_of(world, traits[body].slot) < stage:
-            return False
-    return True
-
-
-@kernel
-def motion_at(
-    world: WorldView, body: int, now: float, now_low: float
-) -> tuple[float, float, float, float]:
-    """Return (x, y, vx, vy) of a body at a time within the step."""
-    trait = traits_of(world)[body]
-    if trait.slot < 0:
-        return trait.home_x, trait.home_y, 0.0, 0.0
-    motion = motions_of(world)[trait.slot]
-    plan = plans_of(world)[trait.slot]
-    since = elapsed(now, now_low, plan.at, plan.at_low)
-    return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
-
-
-@kernel
-def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
-    """Move a body to its position at a time within the step."""
-    slot = traits_of(world)[body].slot
-    if slot >= 0:
-        motion, plan = motions_of(world)[slot], plans_of(world)[slot]
-        x, y, _, _ = motion_at(world, body, now, now_low)
-        way = abs(x - motion.x) + abs(y - motion.y)
-        if way > SAME_TIME * (abs(x) + abs(y)):
-            plan.instant = 0
-        size = _size_of(world, body)
-        if 2.0 * way > SLIDE * size:
-            plan.rests = 0
-        plan.nowhere = not way > NO_WAY * size
-        motion.x, motion.y = x, y
-        plan.at, plan.at_low = now, now_low
-
-
-@kernel
-def _size_of(world: WorldView, body: int) -> float:
-    """Return the width or the height of a body, whichever is less."""
-    shape = shapes_of(world)[traits_of(world)[body].collider]
-    return float(min(shape.upper_x - shape.lower_x, shape.upper_y - shape.lower_y))
-
-
-@kernel
-def is_short_way(world: WorldView, body: int) -> bool:
-    """Return whether a body went next to nowhere when it was moved last, or has no mass."""
-    trait = traits_of(world)[body]
-    return bool(trait.inverse_mass == 0.0 or plans_of(world)[trait.slot].nowhere)
-
-
-@kernel
-def slowest_hit(world: WorldView, a: int, b: int) -> float:
-    """Return the speed of approach that rounding could make of the speeds of two bodies so far."""
-    speed = 0.0
-    for body in (a, b):
-        slot = traits_of(world)[body].slot
-        if slot >= 0:
-            speed += plans_of(world)[slot].speed
-    return NO_APPROACH * speed
-
-
-@kernel
 def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
     """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
-    bodies = traits_of(world).shape[0]
     if one.sensor >= 0:
-        return bool(inside_of(world)[one.sensor * bodies + b])
+        return find_inside(world, a, b) != NO_ONE
     if other.sensor >= 0:
-        return bool(inside_of(world)[other.sensor * bodies + a])
+        return find_inside(world, b, a) != NO_ONE
     return False
-
-
-@kernel
-def skewness(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
-    """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
-    least = 1.0
-    for index in range(shape.first, shape.first + shape.count):
-        edge = edges[index]
-        least = min(least, abs(edge.normal_x * y - edge.normal_y * x))
-    return least
-
-
-@kernel
-def passes_by(
-    world: WorldView,
-    a: int,
-    b: int,
-    ux: float,
-    uy: float,
-    normal_x: float,
-    normal_y: float,
-    reach: float,
-) -> bool:
-    """Return whether two solid bodies that touch and approach do not hit each other.
-
-    They rest if they approach more slowly than rounding can tell. They slide by if they have come
-    to rest again and again, and are slow; or if both are round there, and would overlap by less
-    than a rounding. (At the angle x it is R x^2 / 2, where R is the sum of the radii. So x is not
-    known to 1e-8.) And what has no room moves into what presses it, until the step ends.
-
-    Args:
-        world, a, b: the bodies.
-        ux, uy: the velocity of b relative to a.
-        normal_x, normal_y: unit vector from a to b.
-        reach: the sum of the coordinates on which the rounding of the gap depends.
-    """
-    closing = -(ux * normal_x + uy * normal_y)
-    least = slowest_hit(world, a, b)
-    if closing <= least:
-        return True
-    if progress_of(world).inert:
-        if has_reached(world, a, b, CRUSHED):
-            return True
-        if closing <= SLIDE / NO_APPROACH * least and _are_sliding(world, a, b):
-            return True
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    one, other = shapes[traits[a].collider], shapes[traits[b].collider]
-    radius = one.radius + other.radius
-    # In units of the speed, because its square may overflow.
-    largest = max(abs(ux), abs(uy))
-    sine, x, y = closing / largest, ux / largest, uy / largest
-    if radius == 0.0 or sine * sine * radius > 2.0 * SAME_TIME * reach * (x * x + y * y):
-        return False
-    # A corner is round, too, but a face is not.
-    return bool(
-        skewness(one, edges, normal_x, normal_y) > PARALLEL
-        and skewness(other, edges, normal_x, normal_y) > PARALLEL
-    )
-
-
-@kernel
-def _are_held(world: WorldView, a: int, b: int) -> bool:
-    """Return whether two bodies that are no sensors have lost their masses in this step.
-
-    So every meeting has a body that it brings closer to being held.
-    """
-    if not progress_of(world).inert or not has_reached(world, a, b, HELD):
-        return False
-    traits = traits_of(world)
-    return bool(traits[a].sensor < 0 and traits[b].sensor < 0)
-
-
-@kernel
-def _are_sliding(world: WorldView, a: int, b: int) -> bool:
-    """Return whether those of two bodies that have a mass have come to rest again and again."""
-    traits = traits_of(world)
-    for body in (a, b):
-        slot = traits[body].slot
-        if traits[body].inverse_mass > 0.0 and plans_of(world)[slot].rests < MOST_RESTS:
-            return False
-    return True
-
-
-@kernel
-def _is_straighter(
-    world: WorldView, plan: PlanRecord, other: int, normal_x: float, normal_y: float
-) -> bool:
-    """Return whether a body is met more along a face's normal than the partner that is planned.
-
-    This decides between two bodies that are met at the same time, within rounding. A disc that
-    lands on the seam of two boxes meets the face of one and not the corner of the other.
-    """
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    rank = skewness(shapes[traits[other].collider], edges, normal_x, normal_y)
-    partner = shapes[traits[plan.partner].collider]
-    best_rank = skewness(partner, edges, plan.normal_x, plan.normal_y)
-    return bool(rank < best_rank or (rank == best_rank and other < plan.partner))
 
 
 @kernel
@@ -241,120 +56,212 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
             consider this one).
     """
     plan = plans_of(world)[slot]
-    plan.kind = NOTHING
+    _forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
     plan.slack = 0.0
     plan.tied = 0
     _find_event(world, slot, now, now_low, only_later)
+    if plan.kind == MEET:
+        _join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
+def _join_suitors(world: WorldView, slot: int) -> None:
+    """Put a body into the list of those that plan to meet its partner, if the partner moves."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    theirs = traits_of(world)[plan.partner].slot
+    if theirs < 0:
+        return
+    partner = plans[theirs]
+    plan.previous_suitor = NO_ONE
+    plan.next_suitor = partner.suitor
+    if partner.suitor != NO_ONE:
+        plans[partner.suitor].previous_suitor = slot
+    partner.suitor = slot
+
+
+@kernel
+def _forget_partner(world: WorldView, slot: int) -> None:
+    """Let a body plan nothing, and take it out of the list in which it is."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    if plan.kind == MEET:
+        theirs = traits_of(world)[plan.partner].slot
+        if theirs >= 0:
+            if plan.next_suitor != NO_ONE:
+                plans[plan.next_suitor].previous_suitor = plan.previous_suitor
+            if plan.previous_suitor != NO_ONE:
+                plans[plan.previous_suitor].next_suitor = plan.next_suitor
+            else:
+                plans[theirs].suitor = plan.next_suitor
+    plan.kind = NOTHING
+
+
+@kernel
+def _meeting(
+    world: WorldView,
+    slot: int,
+    other: int,
+    since: float,
+    since_low: float,
+    best: float,
+    best_low: float,
+) -> tuple[float, float, float, float]:
+    """Return (duration, normal_x, normal_y, slack) of when two bodies meet, seen from a time.
+
+    The duration is inf if they don't meet before the time ``best``, or so soon after it that
+    rounding decides. Bodies that touch or overlap meet only if they have to bounce. For so much as
+    the slack before they meet, they touch already.
+    """
+    shapes, plans, motions = shapes_of(world), plans_of(world), motions_of(world)
+    body = moving_of(world)[slot]
+    own, trait = traits_of(world)[body], traits_of(world)[other]
+    motion, plan = motions[slot], plans[slot]
+    x, y = place_at(motion, plan, since, since_low)
+    their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
+    late = plan.slack
+    if trait.slot >= 0:
+        theirs = motions[trait.slot]
+        their_x, their_y = place_at(theirs, plans[trait.slot], since, since_low)
+        ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
+    dx, dy = their_x - x, their_y - y
+    if trait.slot < 0 and ux * ux + uy * uy > 0.0:
+        coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
+        late = max(late, TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy)))
+    left = elapsed(best, best_low, since, since_low) + late
+    if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, left):
+        return math.inf, 0.0, 0.0, 0.0
+    margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
+    time, normal_x, normal_y = impact_between(
+        shapes,
+        edges_of(world),
+        own.collider,
+        trait.collider,
+        dx,
+        dy,
+        ux,
+        uy,
+        left,
+        margin_x,
+        margin_y,
+    )
+    if time == math.inf:
+        return math.inf, 0.0, 0.0, 0.0
+    closing = -(ux * normal_x + uy * normal_y)
+    margin = margin_along(normal_x, normal_y, margin_x, margin_y)
+    if own.sensor < 0 and trait.sensor < 0:
+        if progress_of(world).inert and has_reached(world, body, other, HELD):
+            # So every meeting has a body that it brings closer to being held.
+            return math.inf, 0.0, 0.0, 0.0
+        if time == 0.0:
+            progress_of(world).touching = 1
+        if time * closing <= margin and passes_by(world, body, other, closing):
+            return math.inf, 0.0, 0.0, 0.0
+    return time, normal_x, normal_y, margin / closing if closing > 0.0 else 0.0
+
+
+@kernel
 def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
-    """Set a body's plan to its first event, if there is one."""
-    shapes = shapes_of(world)
-    edges = edges_of(world)
-    traits = traits_of(world)
-    near = near_of(world)
-    plan = plans_of(world)[slot]
+    """Set a body's plan to its first event, if there is one.
+
+    A pair's time of impact is computed from when both bodies began their courses, whenever that is.
+    So nothing but the two courses has an influence on it: no bit depends on the broad phase, or on
+    the length of steps.
+    """
+    traits, plans, near = traits_of(world), plans_of(world), near_of(world)
+    plan = plans[slot]
     body = moving_of(world)[slot]
     own = traits[body]
-    x, y, vx, vy = motion_at(world, body, now, now_low)
-    best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
-    if plan.rests >= MOST_RESTS:
-        best = _look_again(world, plan, body, abs(vx) + abs(vy), best)
+    best, best_low = _plan_alone(world, slot, now, now_low)
     for index in range(find_near(world, slot, only_later)):
         other = near[index]
         trait = traits[other]
-        their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
-        dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
-        slack = 0.0
-        if trait.slot < 0 and ux * ux + uy * uy > 0.0:
-            coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-            slack = SAME_POINT * coordinates / math.sqrt(ux * ux + uy * uy)
-        latest = best + max(slack, plan.slack)
-        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, latest):
-            continue
-        if is_inside(world, own, body, trait, other) or _are_held(world, body, other):
-            continue
-        time, normal_x, normal_y = impact_between(
-            shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, latest
+        since, since_low = plan.at, plan.at_low
+        if trait.slot >= 0:
+            theirs = plans[trait.slot]
+            if is_earlier(since, since_low, theirs.at, theirs.at_low):
+                since, since_low = theirs.at, theirs.at_low
+        time, normal_x, normal_y, slack = _meeting(
+            world, slot, other, since, since_low, best, best_low
         )
-        if time == math.inf:
+        if time == math.inf or is_inside(world, own, body, trait, other):
             continue
-        closing = -(ux * normal_x + uy * normal_y)
-        coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-        if own.sensor < 0 and trait.sensor < 0:
-            if time == 0.0:
-                progress_of(world).touching = 1
-            if time * closing <= SAME_TIME * coordinates and passes_by(
-                world, body, other, ux, uy, normal_x, normal_y, coordinates
-            ):
+        begin, begin_low = later(since, since_low, time)
+        if is_earlier(begin, begin_low, now, now_low):
+            # That meeting is over: the body has left the sensor, for instance.
+            time, normal_x, normal_y, slack = _meeting(
+                world, slot, other, now, now_low, best, best_low
+            )
+            if time == math.inf:
                 continue
-        is_tied = plan.kind == MEET and abs(time - best) <= max(slack, plan.slack)
-        if plan.kind == MEET and abs(time - best) <= slack:
-            is_first = _is_straighter(world, plan, other, normal_x, normal_y)
+            begin, begin_low = later(now, now_low, time)
+        wait = elapsed(begin, begin_low, best, best_low)
+        # At the same time as the best so far: then the later one is touched already.
+        is_tied = plan.kind == MEET and -plan.slack <= wait <= slack
+        are_static = trait.slot < 0 and traits[plan.partner].slot < 0
+        if is_tied and (wait == 0.0 or are_static):
+            is_first = is_straighter(
+                world,
+                body,
+                other,
+                normal_x,
+                normal_y,
+                plan.partner,
+                plan.normal_x,
+                plan.normal_y,
+                best,
+                best_low,
+            )
         else:
-            # At the same time, a meeting comes before a crossing. Of two meetings, the bodies and
-            # not the order of the grid decide.
-            is_first = time < best or plan.kind != MEET
+            # At the same time, a meeting comes before what a body does alone.
+            is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)
         if is_tied:
             plan.tied = 1
         elif is_first:
             plan.tied = 0
         if is_first:
-            best = time
+            best, best_low = begin, begin_low
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
             plan.normal_y = normal_y
-            plan.slack = SAME_TIME * coordinates / closing if closing > 0.0 else 0.0
+            plan.slack = slack
     if plan.kind != NOTHING:
-        plan.time, plan.time_low = later(now, now_low, best)
+        plan.time, plan.time_low = best, best_low
 
 
 @kernel
-def _find_crossing(
-    world: WorldView, plan: PlanRecord, x: float, y: float, vx: float, vy: float
-) -> float:
-    """Plan to leave the cell, if the body does; return in how long."""
-    header = header_of(world)
-    time_x = time_to_cross(x, vx, header.left, header.cell, plan.column, header.columns)
-    time_y = time_to_cross(y, vy, header.bottom, header.cell, plan.row, header.rows)
-    time = min(time_x, time_y)
-    if time < math.inf:
-        plan.kind = CROSS_X if time_x <= time_y else CROSS_Y
-    return time
+def _plan_alone(world: WorldView, slot: int, now: float, now_low: float) -> tuple[float, float]:
+    """Plan what a body does alone: to leave its box, or to look again what it slides into.
 
-
-@kernel
-def _look_again(world: WorldView, plan: PlanRecord, body: int, speed: float, best: float) -> float:
-    """Plan to look again what a body slides into, if that is its first event; return in how long.
-
-    Args:
-        world, plan, body: the body.
-        speed: its speed, |vx| + |vy|.
-        best: in how long its first event is so far.
+    It returns when, as a time in two numbers.
     """
-    way = SLIDE * _size_of(world, body)
-    if speed > 0.0 and way < best * speed:
-        plan.kind = LOOK
-        return way / speed
-    return best
+    plan = plans_of(world)[slot]
+    body = moving_of(world)[slot]
+    x, y, vx, vy = motion_at(world, body, now, now_low)
+    duration = time_to_leave(plan, x, y, vx, vy)
+    if duration < math.inf:
+        plan.kind = LEAVE
+    if plan.rests >= MOST_RESTS:
+        way, speed = short_way(world, body), abs(vx) + abs(vy)
+        if speed > 0.0 and way < duration * speed:
+            plan.kind = LOOK
+            duration = way / speed
+    if plan.kind == NOTHING:
+        return math.inf, 0.0
+    return later(now, now_low, duration)
 
 
 @kernel
 def find_stale(world: WorldView, slot: int, count: int) -> int:
-    """Append the bodies to ``stale`` that planned to meet one whose course has changed."""
-    body = moving_of(world)[slot]
-    for index in range(find_near(world, slot, False)):
-        other = traits_of(world)[near_of(world)[index]].slot
-        if other < 0:
-            continue
-        plan = plans_of(world)[other]
-        if plan.kind == MEET and plan.partner == body:
-            plan.kind = NOTHING
-            stale_of(world)[count] = other
-            count += 1
+    """Append the bodies to ``stale`` that plan to meet one whose course has changed."""
+    plans, stale = plans_of(world), stale_of(world)
+    suitor = plans[slot].suitor
+    while suitor != NO_ONE:
+        stale[count] = suitor
+        count += 1
+        suitor = plans[suitor].next_suitor
     return count

@@ -2,60 +2,93 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from ..kernels import kernel
-from ..kernels.borrowed import borrowed
-from .clock_time import elapsed, later
-from .events import forget_moved, leave_all_sensors
-from .grid import enter_all
+from ..kernels.borrowed import BYTE
+from ..kernels.portable.addresses import array_at
+from ..tolerances import MOST_RESTS
+from .clock_time import later
+from .courses import motion_at, move_to
+from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import run_events
+from .lookup.boxes import first_margin, fit_all, fit_here
+from .lookup.tree import NO_ONE
 from .overlaps import relax_overlaps, resolve_overlaps
-from .prediction import move_to, predict
-from .records import FREE, NOTHING, Block, Blocks, Hit, Hits, Motions
+from .prediction import find_stale, predict
+from .records import CRUSHED, FREE, NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
 from .tournament import start_tournament
 from .view import (
     WorldView,
     clock_of,
     header_of,
-    motions_after_step_of,
     motions_of,
     moving_of,
     open_world,
     plans_of,
     progress_of,
+    shown_after_step_of,
+    shown_of,
+    stale_of,
     winners_of,
 )
 
 # What `step_worlds` returns if a number is not finite.
 INVALID = -(1 << 62)
 
-HIT_SIZE = Hit.itemsize
+
+def call_of(states: Blocks, insides: Blocks, workspace: Block, hits: Hits) -> npt.NDArray[np.int64]:
+    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [9].
+
+    The arrays must live as long as it is used.
+
+    Args:
+        states, insides: uint8 [worlds, bytes], contiguous; workspace: uint8 [bytes]; see `records`.
+        hits: the buffer, `Hit` [room].
+    """
+    return np.array(
+        [
+            *(states.ctypes.data, *states.shape),
+            *(insides.ctypes.data, insides.shape[1]),
+            *(workspace.ctypes.data, len(workspace)),
+            *(hits.ctypes.data, len(hits)),
+        ],
+        np.int64,
+    )
 
 
 @kernel
-def step_worlds(
-    states: Blocks, workspace: Block, buffer: Block, count: int, dt: float, steps: int
-) -> int:
+def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
     """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
 
-    If the buffer is full, it stops early and returns -1 - count. Call it again with a larger buffer
-    that holds the same hits, and it continues. It returns `INVALID` if a position or velocity of a
-    world is not finite, or has become so, or its time.
+    If the buffer or a block of what is inside is full, it stops early and returns -1 - count. Call
+    it again with larger ones that hold the same, and it continues. It returns `INVALID` if a
+    position or velocity of a world is not finite, or has become so, or its time.
 
     Args:
-        states: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
-        buffer: uint8 [bytes], room for `Hit` records, of which ``count`` are there already.
-        count, dt, steps: see above.
+        call: where the worlds are, see `call_of`. Each array that Python passes to a kernel takes a
+            tenth of a microsecond, and so this is only one.
+        count: of the `Hit` records that are in the buffer already.
+        dt, steps: see above.
     """
-    hits = borrowed(buffer, 0, buffer.shape[0] // HIT_SIZE, Hit)
+    states = array_at(call[0], (call[1], call[2]), BYTE)
+    insides = array_at(call[3], (call[1], call[4]), BYTE)
+    workspace = array_at(call[5], (call[6],), BYTE)
+    hits = array_at(call[7], (call[8],), Hit)
     for world_index in range(states.shape[0]):
-        world = open_world(states[world_index], workspace)
+        world = open_world(states[world_index], insides[world_index], workspace)
         progress = progress_of(world)
         if world_index < progress.world:
             continue
         progress.world = world_index
         progress.full = 0
         while progress.step < steps:
-            if progress.running == 0 and not begin_step(world, dt):
+            if progress.running == 0:
+                if not has_room(world, hits, count):
+                    return -1 - count
+                count = begin_step(world, hits, count, world_index, dt)
+            if count == INVALID:
                 progress.step = 0
                 progress.world = 0
                 return INVALID
@@ -79,38 +112,67 @@ def step_worlds(
 
 
 @kernel
-def begin_step(world: WorldView, dt: float) -> bool:
-    """Prepare the plans of a step; return False, and do nothing, if a number is not finite.
+def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: float) -> int:
+    """Prepare the plans of a step; return how many hits there are.
 
-    Plans from the last step still hold if nobody has written to the motions since.
+    It returns `INVALID`, and does nothing, if a number is not finite. Plans from the last step
+    still hold, but for the bodies that somebody has moved since.
     """
     clock = clock_of(world)
     progress = progress_of(world)
     progress.end, progress.end_low = later(clock.time, clock.time_low, dt)
     if not abs(progress.end) < math.inf:
-        return False
+        return INVALID
     progress.crowded = 0
-    progress.hits = 0
     progress.inert = 0
-    if clock.planned and _are_equal(motions_of(world), motions_after_step_of(world)):
-        return True
-    if not _are_finite(motions_of(world)):
-        return False
+    progress.hits = 0
+    is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
+    if is_calm and clock.planned:
+        return count
+    if not _are_finite(shown_of(world)):
+        return INVALID
+    _adopt_shown(world)
     if header_of(world).sensors > 0:
-        forget_moved(world)
-    clock.planned = 0
-    _clear_plans(world)
+        count = leave_placed(world, hits, count, world_index)
     if header_of(world).continuous:
-        enter_all(world)
-        _predict_all(world)
+        _plan(world, clock.planned == 0)
         if progress.touching and relax_overlaps(world):
-            _predict_all(world)
+            _plan(world, False)
+        clock.planned = 1
+        _end_freshness(world)
     else:
         progress.next_slot = 0
         progress.next_near = 0
         _move_all(world)
-        enter_all(world)
-    return True
+        fit_all(world, progress.end, progress.end_low)
+    return count
+
+
+@kernel
+def _adopt_shown(world: WorldView) -> None:
+    """Let every body that a user has moved begin a new course, and be fresh."""
+    clock, plans = clock_of(world), plans_of(world)
+    motions, shown, after_step = motions_of(world), shown_of(world), shown_after_step_of(world)
+    for slot in range(plans.shape[0]):
+        seen, after, plan = shown[slot], after_step[slot], plans[slot]
+        if seen.x != after.x or seen.y != after.y or seen.vx != after.vx or seen.vy != after.vy:
+            motion = motions[slot]
+            motion.x, motion.y, motion.vx, motion.vy = seen.x, seen.y, seen.vx, seen.vy
+            after.x, after.y, after.vx, after.vy = seen.x, seen.y, seen.vx, seen.vy
+            plan.at, plan.at_low = clock.time, clock.time_low
+            plan.speed = abs(seen.vx) + abs(seen.vy)
+            plan.fresh = 1
+            clock.fresh = 1
+
+
+@kernel
+def _end_freshness(world: WorldView) -> None:
+    """Note that the plans of all bodies hold, unless relaxation has left overlaps."""
+    plans = plans_of(world)
+    if not progress_of(world).crowded:
+        clock_of(world).fresh = 0
+        for slot in range(plans.shape[0]):
+            plans[slot].fresh = 0
 
 
 @kernel
@@ -138,25 +200,6 @@ def _are_finite(motions: Motions) -> bool:
 
 
 @kernel
-def _clear_plans(world: WorldView) -> None:
-    """Let every body plan nothing, and be where its motion says now."""
-    clock = clock_of(world)
-    plans = plans_of(world)
-    for slot in range(plans.shape[0]):
-        plan = plans[slot]
-        plan.at = clock.time
-        plan.at_low = clock.time_low
-        plan.speed = abs(motions_of(world)[slot].vx) + abs(motions_of(world)[slot].vy)
-        plan.hits = plan.rests = plan.instant = plan.nowhere = 0
-        plan.stage = FREE
-        plan.time = math.inf
-        plan.time_low = 0.0
-        plan.slack = 0.0
-        plan.tied = 0
-        plan.kind = NOTHING
-
-
-@kernel
 def _move_all(world: WorldView) -> None:
     """Move every body to its position at the end of the step."""
     progress = progress_of(world)
@@ -166,18 +209,56 @@ def _move_all(world: WorldView) -> None:
 
 
 @kernel
-def _predict_all(world: WorldView) -> None:
-    """Make all plans, at the beginning of a step."""
-    clock = clock_of(world)
+def _plan(world: WorldView, anew: bool) -> None:
+    """Make the plans of fresh bodies, and of those that planned to meet them; or all plans."""
+    plans = plans_of(world)
     progress_of(world).touching = 0
-    start_tournament(winners_of(world), plans_of(world))
-    for slot in range(plans_of(world).shape[0]):
+    fresh = 0
+    for slot in range(plans.shape[0]):
+        fresh += plans[slot].fresh
+    if anew or 2 * fresh > plans.shape[0]:
+        _plan_all(world)
+    else:
+        _plan_fresh(world)
+
+
+@kernel
+def _plan_all(world: WorldView) -> None:
+    """Make all boxes and all plans."""
+    clock = clock_of(world)
+    plans = plans_of(world)
+    for slot in range(plans.shape[0]):
+        plan = plans[slot]
+        plan.time = math.inf
+        plan.time_low = 0.0
+        plan.kind = NOTHING
+        plan.suitor = NO_ONE
+    fit_all(world, clock.time, clock.time_low)
+    start_tournament(winners_of(world), plans)
+    for slot in range(plans.shape[0]):
         predict(world, slot, clock.time, clock.time_low, True)
 
 
 @kernel
+def _plan_fresh(world: WorldView) -> None:
+    """Make the plans of fresh bodies, and of those that planned to meet them."""
+    clock, plans, stale = clock_of(world), plans_of(world), stale_of(world)
+    count = 0
+    for slot in range(plans.shape[0]):
+        if plans[slot].fresh:
+            count = find_stale(world, slot, count)
+            fit_here(world, slot, clock.time, clock.time_low, first_margin(world, slot))
+    for slot in range(plans.shape[0]):
+        if plans[slot].fresh:
+            predict(world, slot, clock.time, clock.time_low, False)
+    for index in range(count):
+        if not plans[stale[index]].fresh:
+            predict(world, stale[index], clock.time, clock.time_low, False)
+
+
+@kernel
 def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
-    """Move every body to its position at the end; return how many hits there are.
+    """Show the position of every body at the end; return how many hits there are.
 
     It returns `INVALID` if a position or velocity has become too large for a number.
     """
@@ -187,21 +268,24 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
     if progress.full:
         return count
     end, end_low = progress.end, progress.end_low
-    clock.time, clock.time_low = end, end_low
-    # Plans of bodies that are not free are for this step only.
-    clock.planned = header.continuous and not progress.crowded and not progress.inert
-    motions, plans = motions_of(world), plans_of(world)
-    after_step = motions_after_step_of(world)
+    motions, plans, moving = motions_of(world), plans_of(world), moving_of(world)
+    shown, after_step = shown_of(world), shown_after_step_of(world)
     for slot in range(header.movers):
-        motion, after, plan = motions[slot], after_step[slot], plans[slot]
-        since = elapsed(end, end_low, plan.at, plan.at_low)
-        motion.x += motion.vx * since
-        motion.y += motion.vy * since
-        plan.at, plan.at_low = end, end_low
+        motion, plan, seen, after = motions[slot], plans[slot], shown[slot], after_step[slot]
+        x, y, vx, vy = motion_at(world, moving[slot], end, end_low)
+        if not header.continuous:
+            motion.x, motion.y = x, y
+            plan.at, plan.at_low = end, end_low
+        if not header.continuous or plan.stage >= CRUSHED or plan.rests >= MOST_RESTS:
+            # What it passes by in this step, it hits in the next one.
+            plan.fresh = 1
+            clock.fresh = 1
         plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE
-        after.x, after.y, after.vx, after.vy = motion.x, motion.y, motion.vx, motion.vy
-    if not _are_finite(motions):
+        seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
+        after.x, after.y, after.vx, after.vy = x, y, vx, vy
+    clock.time, clock.time_low = end, end_low
+    if not _are_finite(shown):
         clock.planned = 0
         return INVALID
     return count

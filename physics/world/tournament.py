@@ -39,10 +39,13 @@ def start_tournament(winners: Indices, plans: Plans) -> None:
 
 @kernel
 def replay(winners: Indices, plans: Plans, slot: int) -> None:
-    """Play those games again in which a changed plan took part."""
+    """Play those games again in which a changed plan took part, or takes part now."""
     node = (winners.shape[0] // 2 + slot) // 2
     while node > 0:
+        before = winners[node]
         winners[node] = better(plans, winners[2 * node], winners[2 * node + 1])
+        if before != slot and winners[node] == before:
+            break  # It was beaten here by the same as before.
         node //= 2
 
 

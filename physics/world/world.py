@@ -1,6 +1,7 @@
 """`World`: many bodies, stepped from impact to impact, and what happened to them."""
 
 import copy
+import math
 import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -8,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, not_negative, vector, whole
+from ..arguments import finite, integer, inverse_mass, near, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..drawing import draw_scene
 from ..errors import HitLimitWarning
@@ -126,8 +127,8 @@ class World:
     def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
         """Put a body somewhere, give it another velocity, or both.
 
-        Overlaps that this makes are relaxed in the next step. A body with a new position is inside
-        no sensor until a step finds it there.
+        The next step relaxes the overlaps that this makes. It begins with an `END` for each sensor
+        that the body is no longer inside, and a `BEGIN` for each that it is now inside.
         """
         body = self._index(index)
         changes = [] if position is None else [(slice(0, 2), vector("position", position))]
@@ -141,8 +142,6 @@ class World:
             scene = self._edit()
             for columns, value in changes:
                 scene.motions[body][columns] = value
-        if position is not None:
-            (self._built or self._scene).forget_inside(body)
 
     @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:
@@ -197,22 +196,24 @@ class World:
                 large for a number.
             RuntimeError: another call is in progress.
         """
-        length, count = checked_step(dt, steps)
+        # Most steps save this call, and the next but one.
+        if not (type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps == 1):
+            dt, steps = checked_step(dt, steps)
         guard = self._alone
         if guard.taken:
             guard.refuse()
         guard.taken = True
         try:
-            built = self._built or self.built()  # most steps save a call
-            hits = built.stepper.step(length, count)
+            built = self._built or self.built()
+            hits = built.stepper.step(dt, steps)
         finally:
             guard.taken = False
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
-                f"a body has no room, or used up its {self._scene.max_hits} hits of a step; for "
-                "the rest of it, it did not bounce. If it is only very fast, it needs shorter "
-                "steps or a larger max_hits",
+                "a body has no room, or used up the hits of a step (max_hits="
+                f"{self._scene.max_hits}); for the rest of it, it did not bounce. If it is only "
+                "very fast, it needs shorter steps or a larger max_hits",
                 HitLimitWarning,
                 stacklevel=2,
             )
@@ -221,12 +222,12 @@ class World:
     @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that contain a point."""
-        return self._overlapping(Particle(0.0), vector("point", point), mask)
+        return self._overlapping(Particle(0.0), near("point", point), mask)
 
     @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
-        """Return the indices of the bodies that overlap a box, given by two of its corners."""
-        low, high = vector("lower", lower), vector("upper", upper)
+        """Return the indices of the bodies that overlap a box, from its lower left corner up."""
+        low, high = near("lower", lower), near("upper", upper)
         if not (low[0] < high[0] and low[1] < high[1]):
             raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
         middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
@@ -238,9 +239,14 @@ class World:
     def query_ray(
         self, start: Any, end: Any, radius: float = 0.0, mask: int = ALL
     ) -> RayHit | None:
-        """Return what a ray from start to end, or a disc cast along it, meets first; or None."""
-        x, y = vector("start", start)
-        way = np.subtract(vector("end", end), (x, y))
+        """Return what a ray from start to end, or a disc cast along it, meets first; or None.
+
+        A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
+        a side does not. At a corner the normal points against the ray, but is turned no further
+        than the normals of the corner's sides.
+        """
+        x, y = near("start", start)
+        way = np.subtract(near("end", end), (x, y))
         built = self.built()
         index, fraction, normal_x, normal_y = find_first(
             built.states[0],
@@ -261,7 +267,7 @@ class World:
     def snapshot(self) -> bytes:
         """Return all that changes as the world is stepped, as bytes for `restore`."""
         built = self.built()
-        return pack_states(built.states, built.setup)
+        return pack_states(built.states, [built.stepper.insides], built.setup)
 
     @alone
     def restore(self, snapshot: bytes) -> None:
@@ -271,14 +277,19 @@ class World:
             ValueError: if it is corrupt, or of another world. This world does not change then.
         """
         built = self.built()
-        unpack_states(snapshot, built.states, built.setup)
+        built.stepper.insides = unpack_states(snapshot, built.states, built.setup)
         built.warned = built.capped
 
     @alone
-    def copies(self, count: int) -> tuple[Setup, ByteArray]:
-        """Return what does not change as the world is stepped, and copies of what does."""
+    def copies(self, count: int) -> tuple[Setup, ByteArray, ByteArray]:
+        """Return what does not change as the world is stepped, and copies of what does.
+
+        Returns:
+            (setup, states, insides), both uint8 [count, bytes].
+        """
         built = self.built()
-        return built.setup, np.repeat(built.states, count, axis=0)
+        insides = np.repeat(built.stepper.insides, count, axis=0)
+        return built.setup, np.repeat(built.states, count, axis=0), insides
 
     def built(self) -> Built:
         """Return the form of the world that kernels step; it is built if need be."""

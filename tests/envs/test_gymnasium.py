@@ -241,7 +241,7 @@ def test_bad_arguments_of_the_vector_env_are_refused():
     with pytest.raises(ValueError, match="threads"):
         ArkanoidVectorEnv(1, threads=0)
     env = ArkanoidVectorEnv(2, autoreset_mode="Disabled")
-    with pytest.raises(ValueError, match="1 seeds for 2 worlds"):
+    with pytest.raises(ValueError, match="1 seed for 2 worlds"):
         env.reset(seed=[1])
     with pytest.raises(TypeError, match="NumPy array of bool"):
         env.reset(options={"reset_mask": [True, False]})

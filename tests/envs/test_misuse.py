@@ -175,7 +175,7 @@ def test_too_many_worlds_are_refused_in_a_sentence():
     with pytest.raises(ValueError, match="num_envs must be between 1 and 1073741824; got 10000"):
         ArkanoidVectorEnv(10**12)
     looks = {"observation": "rgb", "size": 4096, "stack": 64}
-    with pytest.raises(MemoryError, match="num_envs=1073741824 worlds do not fit into memory"):
+    with pytest.raises(MemoryError, match="num_envs=1073741824 does not fit into memory"):
         ArkanoidVectorEnv(1 << 30, **looks)
 
 

@@ -11,6 +11,7 @@ from arkanoid.physics import (
     Body,
     Collider,
     Convex,
+    HalfPlane,
     Particle,
     Rectangle,
     World,
@@ -35,6 +36,16 @@ SMALL_SHAPES: tuple[Collider, ...] = (
 )
 # Half of a strip, open to one side.
 OPEN_SHAPE = Convex([(1, 1), (-1, 1), (-1, 0), (1, 0)], [3], 0.25)
+# One collider of each kind, and an open one.
+COLLIDERS: tuple[Collider, ...] = (
+    DISC,
+    HalfPlane((1, 2), 0.25),
+    AxisAlignedHalfPlane("-y", 0.5),
+    AxisAlignedRectangle(2, 1),
+    Rectangle(2, 1, 0.5),
+    Convex([(0, 0), (2, 0), (1, 1.5)]),
+    OPEN_SHAPE,
+)
 
 
 @dataclass

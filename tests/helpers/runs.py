@@ -1,9 +1,12 @@
-"""Small runs of trainings, and commands that fail."""
+"""Small runs of trainings, copies of packaged ones, and commands that fail."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 from arkanoid.agents import cli
+from arkanoid.agents.experiment.packaged import find_agent
+from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 
 # The settings of a training that takes a second.
@@ -25,6 +28,14 @@ def small(output: Path, **changes: str) -> Experiment:
     """Return an experiment that trains for a second, with other settings changed by `changes`."""
     settings = {**SMALL, "output": str(output), **changes}
     return load_experiment("quick", list(settings.items()))
+
+
+def packaged_copy(path: Path) -> RunFolder:
+    """Return a copy of the packaged agent's run, in a new folder; its model is the last one."""
+    shutil.copytree(find_agent(None), path)
+    run = RunFolder(path)
+    run.best.rename(run.model)
+    return run
 
 
 def sentence(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:

@@ -43,7 +43,7 @@ def test_a_world_says_what_is_in_it() -> None:
 def test_a_batch_says_how_many_worlds_it_has_and_where_they_are_in_time() -> None:
     batch = WorldBatch(room(), 3)
     batch.step(0.5)
-    assert repr(batch) == "<WorldBatch of 3 worlds (1 moving bodies each) at time 0.5>"
+    assert repr(batch) == "<WorldBatch of 3 (moving bodies in each: 1) at time 0.5>"
 
 
 def test_bodies_normals_and_paths_are_where_the_engine_has_them() -> None:

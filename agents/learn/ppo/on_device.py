@@ -61,11 +61,9 @@ class DeviceLoop:
         self._batch_size = min(model.batch_size, steps * worlds)
         self._chosen = numbers(self._batch_size, dtype=torch.int64)
         self._statistics, self._latest = numbers(6), numbers(6)
-        self._parameters = list(policy.parameters())
         self._rate = numbers()
         self._play = Replayed(self._play_rollout, device)
-        # The optimiser makes its memory in its first steps.
-        self._learn = Replayed(self._learn_chosen, device, plain_calls=3)
+        self._learns(self._learning())
         self._random = torch.Generator(device)
 
     def collect(self) -> list[dict[str, Any]]:
@@ -194,9 +192,27 @@ class DeviceLoop:
         self._policy.optimizer.step()
         group["lr"], group["capturable"] = plain
 
+    def _learning(self) -> list[torch.nn.Parameter]:
+        """Return the policy's parameters, but those that are frozen."""
+        return [each for each in self._policy.parameters() if each.requires_grad]
+
+    def _learns(self, parameters: list[torch.nn.Parameter]) -> None:
+        """Let gradient steps change these parameters, and no others."""
+        self._parameters = parameters
+        for parameter in self._policy.parameters():
+            parameter.grad = None  # the optimiser would follow what is left of an earlier one
+        # The optimiser makes its memory in its first steps.
+        self._learn = Replayed(self._learn_chosen, self._device, plain_calls=3)
+
     def begin_update(self) -> None:
-        """Bring the schedules' present values to where the update reads them."""
+        """Bring the schedules' present values, and the parameters, to where the update takes them.
+
+        Parameters may have been frozen, or set free, since the last one.
+        """
         model: PPO = self._model
+        learning = self._learning()
+        if [*map(id, learning)] != [*map(id, self._parameters)]:
+            self._learns(learning)
         remaining = model._current_progress_remaining
         self._rate.fill_(model.policy.optimizer.param_groups[0]["lr"])
         self.clip.fill_(model.clip_range(remaining))  # type: ignore[operator]

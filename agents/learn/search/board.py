@@ -4,9 +4,8 @@ import math
 import os
 from typing import Any
 
-from tqdm import tqdm  # type: ignore[import-untyped]
-
 from ...experiment.errors import SettingsError
+from ...measure.progress import make_count_bar
 
 _ENDED = ("complete", "pruned")
 
@@ -22,13 +21,7 @@ class Board:
     def __init__(self, ended: int, total: int) -> None:
         self._running: dict[int, float] = {}
         self._best = -math.inf
-        self._bar: Any = tqdm(
-            initial=ended,
-            total=total,
-            unit=" trials",
-            # A terminal redraws the bar; a file gets few lines.
-            mininterval=0.2 if os.isatty(2) else 10.0,
-        )
+        self._bar: Any = make_count_bar(total, "trials", ended)
 
     def progress(self, number: int, part: float, latest: float) -> None:
         """Show that a trial has spent a part of its time."""

@@ -5,12 +5,10 @@ bits: a multiplication and an addition are never joined, and divisions and squar
 IEEE 754 says. A thread of the card runs an entry for one item.
 """
 
-import os
 import re
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from uuid import uuid4
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -19,7 +17,7 @@ import numba
 from ..cache import writable_folder
 from ..digest import digest
 from ..messages import say_compiling_for, say_unwritable
-from ..sealed import seal, unseal
+from ..sealed import unseal, write_sealed
 from .entries import Entry, compile_entries
 
 # Every card since Ampere (2020) runs it.
@@ -140,15 +138,11 @@ def _load(kept: Path) -> str | None:
 
 
 def _save(kept: Path, ptx: str) -> None:
-    """Keep PTX in a file, or go on without. Other processes see the whole file or none."""
-    unfinished = kept.with_name(f"{kept.name}.{uuid4().hex[:16]}")
+    """Keep PTX in a file, or go on without."""
     try:
-        unfinished.write_bytes(seal(_MARK, _VERSION, ptx.encode()))
-        os.replace(unfinished, kept)
+        write_sealed(kept, _MARK, _VERSION, ptx.encode())
     except OSError as error:
         say_unwritable(kept.parents[1], error)
-        with suppress(OSError):
-            unfinished.unlink(missing_ok=True)
 
 
 def _assemble(code: str, entries: Sequence[Entry]) -> str:

@@ -2,8 +2,9 @@
 
 from ...kernels import kernel
 from ...tolerances import HITS_FOR_NOTHING, MOST_AT_ONCE, MOST_RESTS
+from ..lookup.boxes import fit_here, margin_after_hit
 from ..prediction import find_stale, predict
-from ..records import FREE, HELD, INERT, NOTHING
+from ..records import FREE, HELD, INERT
 from ..view import (
     WorldView,
     clock_of,
@@ -21,8 +22,7 @@ def count_hit(world: WorldView, slot: int, is_short: bool) -> None:
     """Count a hit of a body; after `max_hits` it is inert, after as many again it is held.
 
     Some hits count for several: those that go nowhere, those of a body that bounces no more, and
-    those that the world can no longer afford, since it has had `max_hits` in this step. So there
-    are about `max_hits` in a step, and a tenth of it for each body, times the number of stages.
+    those that the world can no longer afford, since it has had `max_hits` in this step.
 
     Args:
         world, slot: the body.
@@ -67,19 +67,24 @@ def reach_stage(world: WorldView, slot: int, stage: int) -> None:
 def plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
     """Make new plans for two bodies that have bounced, and for all that planned to meet them."""
     traits = traits_of(world)
-    plans = plans_of(world)
-    for body in (a, b):
-        if traits[body].slot >= 0:
-            plans[traits[body].slot].kind = NOTHING
     count = 0
     for body in (a, b):
         # A body of infinite mass keeps its course: plans to meet it still hold.
         if traits[body].inverse_mass > 0.0:
             count = find_stale(world, traits[body].slot, count)
+            shrink_box(world, traits[body].slot, now, now_low)
     for body in (a, b):
         if traits[body].slot >= 0:
             predict(world, traits[body].slot, now, now_low, False)
     predict_stale(world, count, now, now_low)
+
+
+@kernel
+def shrink_box(world: WorldView, slot: int, now: float, now_low: float) -> None:
+    """Let a body that was hit have a smaller box, if it is in a crowd."""
+    margin = margin_after_hit(world, slot)
+    if margin < plans_of(world)[slot].margin:
+        fit_here(world, slot, now, now_low, margin)
 
 
 @kernel

@@ -1,34 +1,24 @@
 """Which bodies meet at the same time, and so are resolved together."""
 
-import math
-
 from ...kernels import kernel
-from ...pairs.table import impact_between, may_touch
-from ...tolerances import SAME_TIME
 from ..clock_time import elapsed, later
-from ..grid import find_near
-from ..prediction import motion_at, passes_by
+from ..courses import margins_of, motion_at
+from ..lookup.neighbours import find_near, sort_items
 from ..records import MEET
 from ..tournament import is_far_ahead, next_due
 from ..view import (
     WorldView,
-    edges_of,
     header_of,
     members_of,
-    motions_of,
     moving_of,
     near_of,
     plans_of,
     progress_of,
-    shapes_of,
+    stale_of,
     traits_of,
     winners_of,
 )
-from .touches import add_member, are_joined, clear_group, join, velocities_of
-
-# How far two bodies may be apart that are tested, in units of what counts as touching. Those that
-# pass each other closely need some way to touch.
-_WAY = 1e4
+from .touches import add_member, are_joined, clear_group, join, velocities_of, would_hit
 
 
 @kernel
@@ -58,10 +48,15 @@ def _is_solid_meeting(world: WorldView, slot: int) -> bool:
 
 @kernel
 def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
-    """Begin a group with a meeting that happens now, and all others at the same time."""
+    """Begin a group with a meeting that happens now, and all others at the same time.
+
+    They join in the order of their bodies. So no bit depends on which of the two planned to meet.
+    """
     clear_group(world)
-    plans, winners = plans_of(world), winners_of(world)
-    _join_planned(world, slot, now, now_low)
+    plans, winners, pairs = plans_of(world), winners_of(world), stale_of(world)
+    bodies = traits_of(world).shape[0]
+    pairs[0] = _pair_of(world, slot)
+    count = 1
     latest, latest_low = later(now, now_low, plans[slot].slack)
     node = next_due(winners, plans, 0, latest, latest_low)
     while node > 0:
@@ -70,36 +65,39 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
         # The times may differ by what rounding may do to either.
         wait = elapsed(plan.time, plan.time_low, now, now_low)
         if other != slot and wait <= plan.slack and _is_solid_meeting(world, other):
-            _join_planned(world, other, now, now_low)
+            pairs[count] = _pair_of(world, other)
+            count += 1
         node = next_due(winners, plans, node, latest, latest_low)
+    sort_items(pairs, count)
+    for index in range(count):
+        if index == 0 or pairs[index] != pairs[index - 1]:
+            _join_planned(world, pairs[index] // bodies, pairs[index] % bodies, now, now_low)
 
 
 @kernel
-def _join_planned(world: WorldView, slot: int, now: float, now_low: float) -> None:
-    """Join a body with the partner that it planned to meet."""
-    plan = plans_of(world)[slot]
-    a, b = moving_of(world)[slot], plan.partner
-    normal_x, normal_y = plan.normal_x, plan.normal_y
-    # They need new plans, also if this turns out to be no hit.
-    add_member(world, slot)
-    if traits_of(world)[b].slot >= 0:
-        add_member(world, traits_of(world)[b].slot)
-    if traits_of(world)[a].inverse_mass == 0.0:
+def _pair_of(world: WorldView, slot: int) -> int:
+    """Return the pair of a body and its partner as one number, the same for both."""
+    one, other = moving_of(world)[slot], plans_of(world)[slot].partner
+    return int(min(one, other) * traits_of(world).shape[0] + max(one, other))
+
+
+@kernel
+def _join_planned(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
+    """Join two bodies of which one, or both, planned to meet the other."""
+    plans, traits = plans_of(world), traits_of(world)
+    for body in (a, b):
+        # It needs a new plan, also if this turns out to be no hit.
+        if traits[body].slot >= 0:
+            add_member(world, traits[body].slot)
+    slot = traits[a].slot
+    if slot >= 0 and plans[slot].kind == MEET and plans[slot].partner == b:
+        normal_x, normal_y = plans[slot].normal_x, plans[slot].normal_y
+    else:
+        normal_x, normal_y = -plans[traits[b].slot].normal_x, -plans[traits[b].slot].normal_y
+    if traits[a].inverse_mass == 0.0:
         a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     if not are_joined(world, a, b):
-        reach = _coordinates(world, a, now, now_low) + _coordinates(world, b, now, now_low)
-        join(world, a, b, normal_x, normal_y, reach)
-
-
-@kernel
-def _coordinates(world: WorldView, body: int, now: float, now_low: float) -> float:
-    """Return the sum of the coordinates of where a body is and where it came from."""
-    x, y, _, _ = motion_at(world, body, now, now_low)
-    slot = traits_of(world)[body].slot
-    if slot < 0:
-        return abs(x) + abs(y)
-    motion = motions_of(world)[slot]
-    return float(abs(x) + abs(y) + abs(motion.x) + abs(motion.y))
+        join(world, a, b, normal_x, normal_y, now, now_low)
 
 
 @kernel
@@ -132,50 +130,26 @@ def _join_around(world: WorldView, body: int, now: float, now_low: float) -> Non
     if own.sensor >= 0:
         return
     x, y, _, _ = motion_at(world, body, now, now_low)
-    own_reach = _coordinates(world, body, now, now_low)
     old_vx, old_vy, vx, vy = velocities_of(world, body)
-    for index in range(find_near(world, own.slot, False)):
+    count = find_near(world, own.slot, False)
+    sort_items(near, count)
+    for index in range(count):
         other = near[index]
-        trait = traits[other]
-        if trait.sensor >= 0:
+        if traits[other].sensor >= 0:
             continue
         their_x, their_y, _, _ = motion_at(world, other, now, now_low)
         dx, dy = their_x - x, their_y - y
+        margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
         their_old_vx, their_old_vy, their_vx, their_vy = velocities_of(world, other)
-        reach = own_reach + _coordinates(world, other, now, now_low)
         # First as they came, then as they would go on.
         ux, uy = their_old_vx - old_vx, their_old_vy - old_vy
-        touches, normal_x, normal_y = _touch(world, body, other, dx, dy, ux, uy, reach)
+        touches, normal_x, normal_y = would_hit(
+            world, body, other, dx, dy, ux, uy, margin_x, margin_y
+        )
         if not touches and (ux != their_vx - vx or uy != their_vy - vy):
             ux, uy = their_vx - vx, their_vy - vy
-            touches, normal_x, normal_y = _touch(world, body, other, dx, dy, ux, uy, reach)
+            touches, normal_x, normal_y = would_hit(
+                world, body, other, dx, dy, ux, uy, margin_x, margin_y
+            )
         if touches and not are_joined(world, body, other):
-            join(world, body, other, normal_x, normal_y, reach)
-
-
-@kernel
-def _touch(
-    world: WorldView, a: int, b: int, dx: float, dy: float, ux: float, uy: float, reach: float
-) -> tuple[bool, float, float]:
-    """Return (whether they do, normal_x, normal_y) of bodies a and b, if they touch and would hit.
-
-    Args:
-        world: the world.
-        a, b: bodies; b is at (dx, dy) from a and moves with (ux, uy).
-        reach: the sum of the coordinates on which the rounding of their gap depends.
-    """
-    speed = max(abs(ux), abs(uy))
-    if speed == 0.0:
-        return False, 0.0, 0.0
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    one, other = traits[a].collider, traits[b].collider
-    tolerance = SAME_TIME * reach
-    duration = _WAY * tolerance / speed
-    if not may_touch(shapes, one, other, dx, dy, ux, uy, duration):
-        return False, 0.0, 0.0
-    time, normal_x, normal_y = impact_between(shapes, edges, one, other, dx, dy, ux, uy, duration)
-    if time == math.inf or -time * (ux * normal_x + uy * normal_y) > tolerance:
-        return False, 0.0, 0.0
-    if passes_by(world, a, b, ux, uy, normal_x, normal_y, reach):
-        return False, 0.0, 0.0
-    return True, normal_x, normal_y
+            join(world, body, other, normal_x, normal_y, now, now_low)

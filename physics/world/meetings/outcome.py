@@ -1,22 +1,24 @@
 """A group that is resolved together: the hits that it has, and what its bodies do next."""
 
 from ...kernels import kernel
-from ...tolerances import NO_APPROACH, RESOLVED, ROUGHLY
+from ...tolerances import RESOLVED, ROUGHLY
+from ..courses import is_short_way, move_to
 from ..events import contact_point, leave_sensors, write_event
-from ..prediction import find_stale, is_short_way, move_to, predict, slowest_hit
-from ..records import CRUSHED, HELD, HIT, NOTHING, Hits
+from ..prediction import find_stale, predict
+from ..records import CRUSHED, HELD, HIT, Hits
 from ..view import (
     WorldView,
-    header_of,
+    inside_of,
     members_of,
     plans_of,
     progress_of,
     touches_of,
     traits_of,
 )
-from .changes import count_hit, count_rest, predict_stale, reach_stage
+from .changes import count_hit, count_rest, predict_stale, reach_stage, shrink_box
 from .gathering import gather_due, join_neighbours
-from .pair import set_velocity
+from .pair import turn_velocity
+from .passing import slowest_hit
 from .solver import group_speed, inverse_masses, lacking, resolve
 
 # A group begins with the body whose meeting is due and, if it moves, its partner.
@@ -50,9 +52,8 @@ def meet_together(
                 break
             tolerance = RESOLVED
     progress = progress_of(world)
-    # What the hits may write, and the sensors that each member leaves.
-    most = progress.touches + progress.members * header_of(world).sensors
-    if hits.shape[0] - count <= most:
+    # What the hits may write, and all that members may leave.
+    if hits.shape[0] - count <= progress.touches + inside_of(world).count:
         progress.full = 1
         return count
     count = _move_on(world, hits, count, world_index, now, now_low)
@@ -77,13 +78,7 @@ def _move_on(
         if member.met > 0 and member.inverse_mass > 0.0:
             count = leave_sensors(world, hits, count, world_index, member.body, now, now_low)
             move_to(world, member.body, now, now_low)
-            vx, vy = member.vx, member.vy
-            # What is left is only the rounding of the changes.
-            if abs(vx) <= NO_APPROACH * member.turn_x:
-                vx = 0.0
-            if abs(vy) <= NO_APPROACH * member.turn_y:
-                vy = 0.0
-            set_velocity(world, slot, vx, vy)
+            turn_velocity(world, slot, member.vx, member.vy, member.turn_x, member.turn_y)
         plan.speed = max(plan.speed, speed)
     for index in range(progress.touches):
         touch = touches[index]
@@ -156,7 +151,6 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
             is_short = is_short and is_short_way(world, members[index].body)
     for index in range(progress.members):
         slot = traits[members[index].body].slot
-        plans_of(world)[slot].kind = NOTHING
         if members[index].inverse_mass > 0.0:
             # For those who had planned it, a meeting counts even if nothing came of it: each one
             # brings a body closer to `max_hits`, so a step ends.
@@ -171,6 +165,7 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
         slot = traits[members[index].body].slot
         if members[index].met > 0 or plans_of(world)[slot].stage == HELD:
             count = find_stale(world, slot, count)
+            shrink_box(world, slot, now, now_low)
     for index in range(progress.members):
         predict(world, traits[members[index].body].slot, now, now_low, False)
     predict_stale(world, count, now, now_low)

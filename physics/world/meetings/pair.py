@@ -1,11 +1,14 @@
 """Two bodies that meet: their restitution, and the momentum that they exchange."""
 
+import math
+
 from ...kernels import kernel
 from ...pairs.response import bounce_velocities
-from ...tolerances import MOST_AT_ONCE
-from ..prediction import has_reached, inverse_mass_of
+from ...tolerances import MOST_AT_ONCE, NO_APPROACH
+from ..lookup.overrides import find_override
 from ..records import INERT
 from ..view import WorldView, motions_of, overrides_of, plans_of, progress_of, traits_of
+from .passing import has_reached, inverse_mass_of
 
 
 @kernel
@@ -17,10 +20,20 @@ def velocity_of(world: WorldView, slot: int) -> tuple[float, float]:
 
 
 @kernel
-def set_velocity(world: WorldView, slot: int, vx: float, vy: float) -> None:
-    """Give a moving body another velocity."""
+def turn_velocity(
+    world: WorldView, slot: int, vx: float, vy: float, turn_x: float, turn_y: float
+) -> None:
+    """Give a moving body another velocity, or 0 for what is only the rounding of the change.
+
+    Args:
+        world, slot: the body.
+        vx, vy: the velocity.
+        turn_x, turn_y: how far hits have changed it, without signs.
+    """
     motion, plan = motions_of(world)[slot], plans_of(world)[slot]
-    motion.vx, motion.vy = vx, vy
+    # What is too large for a number stays so, and is noticed as the step ends.
+    motion.vx = 0.0 if abs(vx) <= NO_APPROACH * turn_x < math.inf else vx
+    motion.vy = 0.0 if abs(vy) <= NO_APPROACH * turn_y < math.inf else vy
     plan.speed = max(plan.speed, abs(vx) + abs(vy))
 
 
@@ -31,12 +44,9 @@ def restitution_of(world: WorldView, a: int, b: int) -> float:
     It is 0 if none of the two may bounce any more in this step, or loses speed at each of too many
     hits at the same time.
     """
-    restitution = float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
-    low, high = min(a, b), max(a, b)
-    for index in range(overrides_of(world).shape[0]):
-        override = overrides_of(world)[index]
-        if override.a == low and override.b == high:
-            restitution = float(override.restitution)
+    restitution = find_override(overrides_of(world), min(a, b), max(a, b))
+    if math.isnan(restitution):
+        restitution = float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
     if progress_of(world).inert:
         is_lost = restitution < 1.0 and _have_met_often(world, a, b)
         if is_lost or has_reached(world, a, b, INERT):
@@ -73,8 +83,9 @@ def bounce_pair(world: WorldView, a: int, b: int, normal_x: float, normal_y: flo
         normal_y,
         restitution_of(world, a, b),
     )
+    turn_x, turn_y = abs(impulse * normal_x), abs(impulse * normal_y)
     if inverse_mass_a > 0.0:
-        set_velocity(world, one, vx_a, vy_a)
+        turn_velocity(world, one, vx_a, vy_a, turn_x * inverse_mass_a, turn_y * inverse_mass_a)
     if inverse_mass_b > 0.0:
-        set_velocity(world, other, vx_b, vy_b)
+        turn_velocity(world, other, vx_b, vy_b, turn_x * inverse_mass_b, turn_y * inverse_mass_b)
     return impulse

@@ -1,9 +1,12 @@
 """A group: moving bodies, and the touches between them that have to be resolved together."""
 
+import math
+
 from ...kernels import kernel
 from ...pairs.response import shares
-from ...tolerances import PARALLEL, SAME_TIME
-from ..prediction import inverse_mass_of, skewness, slowest_hit
+from ...pairs.table import impact_between, may_touch
+from ...pairs.touching import margin_along
+from ..courses import margins_of, motion_at
 from ..view import (
     WorldView,
     edges_of,
@@ -16,6 +19,12 @@ from ..view import (
     traits_of,
 )
 from .pair import restitution_of, velocity_of
+from .passing import inverse_mass_of, passes_by, slowest_hit
+from .ties import is_straighter
+
+# How far two bodies may be apart that are tested, in units of what counts as touching. Those that
+# pass each other closely need some way to touch.
+_WAY = 1e4
 
 
 @kernel
@@ -76,7 +85,15 @@ def are_joined(world: WorldView, a: int, b: int) -> bool:
 
 
 @kernel
-def join(world: WorldView, a: int, b: int, normal_x: float, normal_y: float, reach: float) -> bool:
+def join(
+    world: WorldView,
+    a: int,
+    b: int,
+    normal_x: float,
+    normal_y: float,
+    now: float,
+    now_low: float,
+) -> bool:
     """Add the touch of two bodies, if they have to bounce; return whether it was added.
 
     They have to if they approached. They also have to if they approach as the others leave them,
@@ -86,7 +103,7 @@ def join(world: WorldView, a: int, b: int, normal_x: float, normal_y: float, rea
     Args:
         world, a, b: a body of finite mass, and another one.
         normal_x, normal_y: unit vector from a to b.
-        reach: the sum of the coordinates on which the rounding of their gap depends.
+        now, now_low: the time.
     """
     progress = progress_of(world)
     old_ax, old_ay, ax, ay = velocities_of(world, a)
@@ -105,7 +122,7 @@ def join(world: WorldView, a: int, b: int, normal_x: float, normal_y: float, rea
             return False
     aim = restitution * max(approach, 0.0)
     if traits_of(world)[b].slot < 0 and _is_same_wall(
-        world, a, b, normal_x, normal_y, restitution, aim, reach
+        world, a, b, normal_x, normal_y, restitution, aim, now, now_low
     ):
         return False
     if not _append(world, a, b, normal_x, normal_y, restitution, aim):
@@ -152,6 +169,44 @@ def _append(
 
 
 @kernel
+def would_hit(
+    world: WorldView,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    ux: float,
+    uy: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[bool, float, float]:
+    """Return (whether they do, normal_x, normal_y) of bodies a and b, if they touch and would hit.
+
+    Args:
+        world: the world.
+        a, b: bodies; b is at (dx, dy) from a and moves with (ux, uy).
+        margin_x, margin_y: their margins.
+    """
+    speed = max(abs(ux), abs(uy))
+    if speed == 0.0:
+        return False, 0.0, 0.0
+    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
+    one, other = traits[a].collider, traits[b].collider
+    duration = _WAY * (margin_x + margin_y) / speed
+    if not may_touch(shapes, one, other, dx, dy, ux, uy, duration):
+        return False, 0.0, 0.0
+    time, normal_x, normal_y = impact_between(
+        shapes, edges, one, other, dx, dy, ux, uy, duration, margin_x, margin_y
+    )
+    if time == math.inf:
+        return False, 0.0, 0.0
+    closing = -(ux * normal_x + uy * normal_y)
+    if time * closing > margin_along(normal_x, normal_y, margin_x, margin_y):
+        return False, 0.0, 0.0
+    return not passes_by(world, a, b, closing), normal_x, normal_y
+
+
+@kernel
 def _is_same_wall(
     world: WorldView,
     a: int,
@@ -160,32 +215,52 @@ def _is_same_wall(
     normal_y: float,
     restitution: float,
     aim: float,
-    reach: float,
+    now: float,
+    now_low: float,
 ) -> bool:
     """Return whether a body touches another static body that is one wall with b, as at a seam.
 
-    Their normals are then the same, or the corner of one is within rounding of the other's face. Of
-    the two, the one that is met more along a face's normal stays.
+    Then it would not hit the one if it slid along the other. Of two that are so, the one that is
+    met more along a face stays.
     """
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    radius = shapes[traits[a].collider].radius
     for index in range(progress_of(world).touches):
         touch = touches_of(world)[index]
         if touch.a != a or touch.other >= 0:
             continue
-        x, y = normal_x - touch.normal_x, normal_y - touch.normal_y
-        across = x * x + y * y
-        # A corner whose normal is turned that far is so much behind the face.
-        behind = 0.5 * radius * across
-        if across > PARALLEL * PARALLEL and not 0.0 < behind <= 4.0 * SAME_TIME * reach:
-            continue
-        rank = skewness(shapes[traits[b].collider], edges, normal_x, normal_y)
-        other = shapes[traits[touch.b].collider]
-        other_rank = skewness(other, edges, touch.normal_x, touch.normal_y)
-        is_straighter = rank < other_rank or (rank == other_rank and b < touch.b)
-        if is_straighter and touch.change == 0.0:
+        is_behind = not _hits_along(world, a, b, touch.normal_x, touch.normal_y, now, now_low)
+        is_before = not _hits_along(world, a, touch.b, normal_x, normal_y, now, now_low)
+        if is_behind and is_before:
+            is_before = is_straighter(
+                world,
+                a,
+                b,
+                normal_x,
+                normal_y,
+                touch.b,
+                touch.normal_x,
+                touch.normal_y,
+                now,
+                now_low,
+            )
+        if is_before and touch.change == 0.0:
             touch.b = b
             touch.normal_x, touch.normal_y = normal_x, normal_y
             touch.restitution, touch.aim = restitution, aim
-        return True
+            return True
+        if is_behind:
+            return True
     return False
+
+
+@kernel
+def _hits_along(
+    world: WorldView, a: int, b: int, normal_x: float, normal_y: float, now: float, now_low: float
+) -> bool:
+    """Return whether a body hits a static one, b, if it slides along a face with a normal."""
+    x, y, vx, vy = motion_at(world, a, now, now_low)
+    their_x, their_y, _, _ = motion_at(world, b, now, now_low)
+    margin_x, margin_y = margins_of(world, a, b, x, y, their_x, their_y)
+    along = vx * normal_x + vy * normal_y
+    ux, uy = along * normal_x - vx, along * normal_y - vy
+    hits, _, _ = would_hit(world, a, b, their_x - x, their_y - y, ux, uy, margin_x, margin_y)
+    return hits

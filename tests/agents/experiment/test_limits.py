@@ -2,7 +2,6 @@
 
 import errno
 import io
-import shutil
 import sys
 import tomllib
 import tracemalloc
@@ -15,12 +14,12 @@ from arkanoid.agents import cli
 from arkanoid.agents.experiment import files
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.reading import read_toml
-from arkanoid.agents.experiment.runs import RunFolder, pretrained_run
+from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.learn.tensors import read_entry, read_tensors
 from arkanoid.agents.learn.training import train
 from helpers.processes import run_program
-from helpers.runs import SMALL, sentence, small
+from helpers.runs import SMALL, packaged_copy, sentence, small
 
 # Absurd sizes
 
@@ -74,8 +73,7 @@ def test_a_model_that_python_would_unpack_without_a_limit_is_refused(
     kind: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """24 kilobytes took 6.5 GB: the limit was compared afterwards."""
-    run = RunFolder(tmp_path / "received")
-    shutil.copytree(pretrained_run(), run.path)
+    run = packaged_copy(tmp_path / "received")
     with zipfile.ZipFile(run.model, "w", kind) as archive:
         archive.writestr("policy.pth", bytes(10_000_000))
     assert "policy.pth is packed in an unknown way" in sentence(["evaluate", str(run.path)], capsys)

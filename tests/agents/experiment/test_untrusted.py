@@ -23,23 +23,25 @@ import pytest
 import torch
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
-from arkanoid.agents.experiment.runs import ModelFile, RunFolder, pretrained_run
+from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn.model import load_policy, make_model, save_model
 from arkanoid.agents.learn.tensors import read_tensors, write_tensors
 from arkanoid.agents.measure.episodes import adapt
 from arkanoid.envs.play import show, window
+from helpers.runs import packaged_copy
 from stable_baselines3 import PPO
 
 # Every command that reads a model, with little to play.
+SHORT = ["--env.max_decisions", "20"]
 QUICK = ["--evaluation.episodes", "1", "--evaluation.suites", '["games"]']
-QUICK += ["--evaluation.baselines", "[]", "--env.max_decisions", "20"]
+QUICK += ["--evaluation.baselines", "[]", *SHORT]
 COMMANDS = {
-    "evaluate": ["evaluate", "RUN", "--json"],
-    "film": ["film", "RUN", "OUT.gif", "--seconds", "0.2"],
-    "watch": ["watch", "RUN"],
-    "report": ["report", "RUN", "--out", "OUT.html"],
+    "evaluate": ["evaluate", "RUN", "--json", *QUICK],
+    "film": ["film", "RUN", "OUT.gif", "--seconds", "0.2", *SHORT],
+    "watch": ["watch", "RUN", *SHORT],
+    "report": ["report", "RUN", "--out", "OUT.html", *QUICK],
 }
 # Every command that reads a run's settings.
 READERS = {
@@ -64,8 +66,7 @@ class Command:
 @pytest.fixture
 def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunFolder:
     """A received copy of the packaged run; windows close at once."""
-    folder = tmp_path / "received"
-    shutil.copytree(pretrained_run(), folder)
+    received = packaged_copy(tmp_path / "received")
     monkeypatch.setitem(os.environ, "SDL_VIDEODRIVER", "dummy")
 
     class Show(window.Window):
@@ -74,15 +75,12 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RunFolder:
             return False
 
     monkeypatch.setattr(show, "Window", Show)
-    return RunFolder(folder)
+    return received
 
 
 def words(command: list[str], run: RunFolder) -> list[str]:
     out = str(run.path.parent / "out")
-    return [
-        word.replace("RUN", str(run.path)).replace("OUT", out)
-        for word in (*command, *(QUICK if command[0] not in ("train", "reproduce") else []))
-    ]
+    return [word.replace("RUN", str(run.path)).replace("OUT", out) for word in command]
 
 
 def change(path: Path, **entries: bytes) -> None:

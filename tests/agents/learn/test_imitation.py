@@ -86,6 +86,13 @@ def test_a_model_s_games_can_be_seen_as_pictures(data: None, tmp_path: Path) -> 
     env.close()
 
 
+def test_a_packaged_agent_s_games_become_a_data_set(data: None) -> None:
+    """Its name, which is no path, was refused as neither a baseline nor a file."""
+    words = ["dataset", "arkanoid/full-v0", "full", "--games", "2", "--decisions", "5"]
+    assert cli.main(words) == 0
+    assert minari.load_dataset("arkanoid/full-v0").total_episodes == 2
+
+
 def test_replays_become_a_data_set(data: None, tmp_path: Path) -> None:
     env: Any = gym.make("arkanoid:Arkanoid-v0", lives=1).unwrapped
     paths = []

@@ -136,6 +136,20 @@ def test_a_divergence_beyond_the_target_ends_an_update() -> None:
     assert model._n_updates < 20
 
 
+def test_weights_that_are_frozen_between_trainings_stay() -> None:
+    """The second training ended in an error of torch: it asked for gradients of all weights."""
+    model = trainer("vector", TensorVecEnv(worlds("vector", device="cpu"), *KEYWORDS))
+    model.learn(STEPS * WORLDS)
+    layers = list(model.policy.mlp_extractor.parameters())
+    for frozen in (True, False):
+        for parameter in layers:
+            parameter.requires_grad_(not frozen)
+        before = [parameter.clone() for parameter in model.policy.parameters()]
+        model.learn(STEPS * WORLDS)
+        for parameter, old in zip(model.policy.parameters(), before, strict=True):
+            assert torch.equal(parameter, old) != parameter.requires_grad
+
+
 def test_what_the_loops_do_not_know_is_refused() -> None:
     env = TensorVecEnv(worlds("vector", observation="dict", landing=False, device="cpu"))
     model = FastPPO("MultiInputPolicy", env, n_steps=STEPS, batch_size=60, device="cpu")

@@ -103,7 +103,7 @@ def test_an_earlier_evaluation_in_the_same_worlds_leaves_nothing_behind() -> Non
 
 def test_each_level_needs_the_same_number_of_worlds() -> None:
     experiment = load_experiment("quick")
-    with pytest.raises(ValueError, match="3 worlds for 2 levels times 1 episodes"):
+    with pytest.raises(ValueError, match="3 worlds for 2 levels times 1 episode"):
         play_episodes(
             make_worlds(experiment, 3), NoOp(SPACE), [0], [EpisodeStart("a"), EpisodeStart("b")]
         )

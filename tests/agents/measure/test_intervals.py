@@ -44,7 +44,15 @@ def test_it_is_scipys_percentile_bootstrap() -> None:
 
 def test_equal_samples_leave_no_doubt() -> None:
     assert bootstrap_interval([3.0] * 10) == (3.0, 3.0, 3.0)
-    assert bootstrap_interval([3.0]) == (3.0, 3.0, 3.0)
+
+
+def test_one_sample_has_no_interval() -> None:
+    """It was shown as ``± 0.00``, as if a second game could not end otherwise."""
+    for interval in (bootstrap_interval([0.5]), stratified_interval([[0.0, 1.0]], mean)):
+        assert interval.estimate == 0.5
+        assert not interval.is_known
+        assert str(interval) == "0.50"
+        assert interval.as_json() == {"estimate": 0.5, "low": None, "high": None}
 
 
 def test_the_same_samples_get_the_same_interval() -> None:
@@ -60,7 +68,7 @@ def test_without_a_list_of_samples_there_is_no_interval(samples: object) -> None
 
 def test_it_is_shown_with_half_of_its_width() -> None:
     assert str(bootstrap_interval([1234.0, 1236.0])) == "1235 ± 1"
-    assert str(bootstrap_interval([0.5])) == "0.50 ± 0.00"
+    assert str(bootstrap_interval([0.5, 0.5])) == "0.50 ± 0.00"
 
 
 def test_the_interquartile_mean_is_scipys_trimmed_mean() -> None:

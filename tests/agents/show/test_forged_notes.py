@@ -12,12 +12,13 @@ import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.lineage import describe_lineage
-from arkanoid.agents.experiment.runs import ModelFile, RunFolder, pretrained_run
+from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.learn import training
 from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.show.page import as_html, as_markdown, table
 from arkanoid.agents.show.plots import as_png, plot_curves
 from arkanoid.agents.show.report import _model_row, _origin_rows
+from helpers.runs import packaged_copy
 
 OTHERS: list[Any] = [
     *(None, True, -1, 0, 1.5, 10**400, 1e308, -1e308, math.nan, "", "\x1b[31m", [], {}),
@@ -59,15 +60,14 @@ def forged_notes(way: tuple[Any, ...], text: str) -> str:
 @pytest.fixture
 def run(tmp_path: Path) -> RunFolder:
     """A copy of the packaged run."""
-    shutil.copytree(pretrained_run(), tmp_path / "run")
-    return RunFolder(tmp_path / "run")
+    return packaged_copy(tmp_path / "run")
 
 
 def show(run: RunFolder) -> str:
     """Return what a report shows of a run's notes."""
     rows = [[""] * 7, _model_row(ModelFile.find(str(run.path)))]
     notes = run.read_notes()
-    rows += [[*row, "", "", "", "", ""] for row in _origin_rows(notes)]
+    rows += [[*row, "", "", "", "", ""] for row in _origin_rows([notes])]
     rows.append([describe_lineage(notes.get("lineage")), *[""] * 6])
     return str(table(rows))
 
@@ -158,3 +158,10 @@ def test_a_page_shows_what_a_terminal_would_obey() -> None:
     for page in (as_markdown(facts, {"play.gif": "play.gif"}), as_html(facts, pictures)):
         assert r"\x1b[31m" in page.replace("\\[", "[").replace("\\\\", "\\")
         assert {letter for letter in page if category(letter) == "Cc"} == {"\n"}
+
+
+def test_a_report_names_the_commits_of_all_its_runs() -> None:
+    """Once it named that of the first run, whatever the others were trained with."""
+    runs = [{"git": {"commit": commit, "changed": False}} for commit in ("a1", "b2", "a1")]
+    rows = list(_origin_rows([*runs, {"git": None}]))
+    assert rows == [["git: commit", "a1, b2"], ["git: changed", False]]

@@ -13,7 +13,8 @@ import pytest
 from arkanoid.agents import cli
 from arkanoid.agents.commands.evaluate import group_by_experiment
 from arkanoid.agents.experiment.errors import SettingsError
-from arkanoid.agents.experiment.provenance import weights_hash
+from arkanoid.agents.experiment.lineage import find_model
+from arkanoid.agents.experiment.packaged import DEFAULT_AGENT, find_agent, packaged_agents
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.seeds import Purpose, spread_seeds
 from arkanoid.agents.experiment.settings import BASELINES, load_experiment
@@ -27,6 +28,8 @@ from arkanoid.agents.measure.suites import WHOLE_GAMES, EpisodeStart, find_start
 from arkanoid.agents.show.frames import can_be_smooth, frame_rate, play_frames
 from arkanoid.agents.show.page import as_html, code, escape, table, write_page
 from arkanoid.agents.show.plots import as_png, mean_curve, plot_levels, plot_policies
+from helpers.repository import ROOT
+from helpers.runs import packaged_copy
 from imageio_ffmpeg import count_frames_and_secs
 from matplotlib.text import Text
 from PIL import Image
@@ -335,18 +338,45 @@ def test_the_mean_curve_is_read_at_the_same_decisions() -> None:
     np.testing.assert_allclose(highs, 3 * steps)
 
 
-def test_without_a_model_the_packaged_agent_plays(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("named", [[], *([name] for name in packaged_agents())])
+def test_packaged_agents_play_by_their_names(
+    named: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It was trained from scratch by `arkanoid train quick`, and is far above all baselines."""
+    """Without a name the default one; all are far above the ball-follower."""
     arguments = ["--evaluation.episodes", "20", "--evaluation.suites", '["games"]']
-    assert cli.main(["evaluate", "--json", *arguments]) == 0
+    arguments += ["--evaluation.baselines", '["ball-follower"]']
+    assert cli.main(["evaluate", *named, "--json", *arguments]) == 0
     results = json.loads(capsys.readouterr().out)["suites"]["games"]["policies"]
     agent, follower = (results[name]["summary"] for name in ("agent", "ball-follower"))
     assert agent["cleared"]["mean"]["estimate"] >= 0.9
-    assert agent["hits"]["mean"]["low"] > 1.5 * follower["hits"]["mean"]["high"]
-    assert cli.main(["film", str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
-    about = ModelFile.find(None).run.read_notes()
-    assert about["outcome"] == "finished"
-    state = PPO.load(ModelFile.find(None).path, device="cpu").policy.state_dict()
-    assert weights_hash(state) == about["weights"]
+    assert agent["hits"]["mean"]["low"] > 3 * follower["hits"]["mean"]["high"]
+    assert cli.main(["film", *named, str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
+
+
+@pytest.mark.parametrize("name", packaged_agents())
+def test_packaged_agents_are_those_of_their_reports(name: str) -> None:
+    """Each is the best model, by validation, of one of the published runs of its config."""
+    model = ModelFile.find(name)
+    notes, described = model.run.read_notes(), model.describe()
+    assert (notes["outcome"], notes["git"]["changed"]) == ("finished", False)
+    published = load_experiment(name, [])
+    assert replace(model.experiment(), seed=published.seed) == published
+    report = (ROOT / "docs" / "results" / f"{name}.md").read_text(encoding="utf-8")
+    cells = [described["seed"], "best.zip", notes["timesteps"], "[^|]*", "finished"]
+    row = " \\| ".join(map(str, [*cells, described["sha256"][:16]]))
+    assert re.search(row, report), row
+    assert notes["git"]["commit"] in report
+    # stable-baselines3 reads them, too.
+    PPO.load(model.path, device="cpu")
+
+
+def test_a_folder_goes_before_a_packaged_agent_of_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    own = packaged_copy(Path(DEFAULT_AGENT))
+    assert ModelFile.find(DEFAULT_AGENT).path == own.model
+    assert find_model(DEFAULT_AGENT) == own.model
+    assert ModelFile.find(None).path == find_agent(None) / "best.zip"
+    with pytest.raises(SettingsError, match=", ".join(packaged_agents())):
+        ModelFile.find("lit")

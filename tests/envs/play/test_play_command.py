@@ -1,5 +1,6 @@
 """The command `arkanoid play`: what it saves, and its error messages."""
 
+import errno
 import shlex
 import signal
 from collections.abc import Callable
@@ -130,6 +131,50 @@ def test_a_folder_that_cannot_be_made_is_reported_before_the_game(
     (tmp_path / "file").write_text("")
     assert cli.main(["play", "--save", str(tmp_path / "file" / "x.replay")]) == 2
     assert "choose another --save" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("save", [False, True])
+def test_without_a_folder_of_the_user_one_can_play(
+    save: bool,
+    quick: None,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """An error ended the command: in a container, the home may not be written."""
+    import platformdirs
+
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(platformdirs, "user_data_dir", lambda *_: str(tmp_path / "file" / "data"))
+    monkeypatch.setattr(Sitting, "tick", after(30, lambda sitting: sitting.press(Key.QUIT)))
+    path = tmp_path / "x.replay"
+    assert cli.main(["play", *(["--save", str(path)] if save else [])]) == 0
+    out, err = capsys.readouterr()
+    assert err.count("\n") == 1
+    assert "high scores are " in err
+    assert ("replays" in err) != save
+    assert path.exists() == save
+    assert out.startswith("score 0, round 1")
+    assert ("watch it" in out) == save
+
+
+def test_a_game_that_cannot_be_saved_does_not_end_the_play(
+    quick: None,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A full disk ended it, in the middle of an afternoon."""
+
+    def fail(replay: Replay, path: Path) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    monkeypatch.setattr(Replay, "save", fail)
+    monkeypatch.setattr(Sitting, "tick", after(30, lambda sitting: sitting.press(Key.QUIT)))
+    assert cli.main(["play", "--save", str(tmp_path / "x.replay")]) == 0
+    out, err = capsys.readouterr()
+    assert "could not be saved: No space left" in err
+    assert out == "score 0, round 1\n"
 
 
 def test_playing_needs_pygame_and_no_other_extra(tmp_path: Path) -> None:

@@ -6,12 +6,13 @@ from arkanoid.envs.batch.playback import replay_states
 from arkanoid.envs.batch.replays import Replay
 from arkanoid.envs.draw.picture import draw_world
 from arkanoid.envs.play.controls import Key
-from arkanoid.envs.play.viewer import Viewer
+from arkanoid.envs.play.viewer import HINT_SECONDS, Viewer
 from helpers.sittings import HEIGHT, tap
 
 
 def test_a_viewer_shows_the_game_to_its_end_and_again(game: Replay) -> None:
     viewer = Viewer(game, 1.0, HEIGHT)
+    viewer._hints = 0
     assert viewer.frames_per_second == 60.0
     frames = []
     for _ in range(game.result.decisions + 1):
@@ -27,6 +28,7 @@ def test_a_viewer_shows_the_game_to_its_end_and_again(game: Replay) -> None:
 
 def test_a_viewer_pauses_and_begins_again(game: Replay) -> None:
     viewer = Viewer(game, 1.0, HEIGHT)
+    viewer._hints = 0
     first = viewer.picture()
     for _ in range(100):
         viewer.tick()
@@ -67,7 +69,16 @@ def test_two_keys_change_the_speed(game: Replay) -> None:
         assert viewer.frames_per_second <= 60.0
     for _ in range(60):
         viewer.text()
-    assert viewer.text() == ("", ())
+    assert not viewer.text()[1][0].startswith("SPEED")
     for _ in range(40):
         tap(viewer, Key.SLOWER)
     assert viewer.frames_per_second == pytest.approx(60.0 / 1000.0)
+
+
+def test_it_shows_the_keys_at_first(game: Replay) -> None:
+    """`watch` told them, and `replay`, which looks the same, only in its title."""
+    viewer = Viewer(game, 1.0, HEIGHT)
+    assert "ESC: QUIT" in viewer.text()[1][-1]
+    for _ in range(round(HINT_SECONDS * viewer.frames_per_second)):
+        viewer.picture()
+    assert viewer.text() == ("", ())

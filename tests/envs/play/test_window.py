@@ -195,3 +195,23 @@ def test_a_window_of_the_environment_fits_the_screen_with_whole_pixels_per_brick
     assert height % 16 == 0
     assert width * 16 == height * 12
     env.close()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="there is always a display")
+def test_without_a_display_gymnasiums_check_says_what_to_do() -> None:
+    """`check_env` also opens a window; its error named no way to go on."""
+    program = (
+        "import os, gymnasium as gym\n"
+        "from gymnasium.utils.env_checker import check_env\n"
+        "for name in ('DISPLAY', 'WAYLAND_DISPLAY', 'SDL_VIDEODRIVER'):\n"
+        "    os.environ.pop(name, None)\n"
+        "env = gym.make('arkanoid:ArkanoidLite-v0').unwrapped\n"
+        "try:\n"
+        "    check_env(env)\n"
+        "except RuntimeError as error:\n"
+        "    print(error)\n"
+        "check_env(env, skip_render_check=True)\n"
+    )
+    told = run_program(program, warnings="default").stdout
+    assert "no display" in told
+    assert "skip_render_check=True" in told

@@ -171,7 +171,7 @@ def test_too_little_memory(monkeypatch):
         raise torch.OutOfMemoryError("CUDA out of memory")
 
     monkeypatch.setattr("arkanoid.envs.tensor_vector_env.TensorBatch", refuse)
-    with pytest.raises(MemoryError, match="num_envs=3 worlds do not fit into the memory of cpu"):
+    with pytest.raises(MemoryError, match="num_envs=3 does not fit into the memory of cpu"):
         make("cpu", 3)
 
 

@@ -1,9 +1,13 @@
 """The digest: after any edit, nothing runs stale machine code."""
 
+import ast
 import os
 import time
+from pathlib import Path
 
 import pytest
+from arkanoid.physics.kernels import digest
+from helpers.repository import ROOT
 from helpers.scratch_package import Scratch
 
 
@@ -115,3 +119,65 @@ def test_debugging_does_not_run_code_without_checks(scratch: Scratch) -> None:
     scratch.run()
     assert scratch.run(NUMBA_BOUNDSCHECK="1").compiled != []
     assert scratch.run().compiled == []
+
+
+# Statements that are hard to find without a parser.
+HARD = [
+    "from.a import b",
+    "from . . a import b",
+    "from . import(a,b)",
+    "from .a import\\\n    b",
+    "from .a \\\n import b as \\\n c, d",
+    "from . import (a,  # not (c)\n  b, # from . import d\n  c\n)",
+    "x = 1; from . import a; y = 2",
+    "if True: from .a import b; from .c import d",
+    "try: from . import a\nexcept ImportError: from . import b",
+    "def f():\n\tfrom ..a.b import c # d",
+    "'from'; from . import a",
+    "'from . import (see below'\nfrom . import a\nfrom .b import c",
+    "# from . import (\nfrom . import a",
+    "import arkanoid.a, numpy as np, arkanoid.b.c as c",
+    "import arkanoid . a \\\n . b as c; import arkanoid",
+    "import arkanoid.a as arkanoid; from arkanoid.b import c",
+    "from arkanoid import a",
+    "from . import a\r\nfrom . import b\rfrom . import c",
+    "from .a import *",
+]
+
+
+def parsed(text: str, file: Path) -> set[tuple[str, str]]:
+    """What the import statements of a source name, as Python's own parser finds them."""
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom):
+            names = [alias.name for alias in node.names if alias.name != "*"]
+            folder, dotted = str(file.parents[max(0, node.level - 1)]), node.module or ""
+            if not node.level:
+                top, _, dotted = dotted.partition(".")
+                if top != "arkanoid":
+                    continue
+                folder = digest._PACKAGE_FOLDER
+            found |= {(folder, f"{dotted}.{name}".strip(".")) for name in ["", *names]}
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                top, _, dotted = alias.name.partition(".")
+                if top == "arkanoid":
+                    found.add((digest._PACKAGE_FOLDER, dotted))
+    return found
+
+
+@pytest.mark.parametrize("text", HARD)
+def test_no_import_is_missed(text: str) -> None:
+    """Against Python's parser; a name too many does no harm."""
+    file = ROOT / "envs" / "game" / "here.py"
+    expected = parsed(text, file)
+    assert expected
+    lines = text.replace("\r\n", "\n").replace("\r", "\n")
+    assert expected <= set(digest._imported_names(lines, str(file)))
+
+
+def test_no_import_of_the_package_is_missed() -> None:
+    for package in ("physics", "envs", "agents"):
+        for file in (ROOT / package).rglob("*.py"):
+            text = file.read_text(encoding="utf-8")
+            assert parsed(text, file) <= set(digest._imported_names(text, str(file))), file

@@ -14,6 +14,7 @@ import pytest
 from arkanoid.physics.kernels import numba_internals
 from numba.core import event, serialize, types
 from numba.core.caching import FunctionCache
+from numba.core.runtime.nrt import rtsys
 from numba.np import arrayobj
 
 CHANGED = "this Numba ({}) has another `{}`: see `{}` in physics/kernels/numba_internals.py"
@@ -149,6 +150,13 @@ def test_function_cache_keeps_its_files_through_an_attribute(
     again._cache = cache
     again.compile("float64(float64)")
     expect(sum(again.stats.cache_hits.values()) == 1, "FunctionCache._cache_file.load", "CodeFiles")
+
+
+def test_a_cache_loads_without_knowing_how_to_compile() -> None:
+    source = inspect.getsource(FunctionCache.load_overload)
+    called = "target_context.refresh()" in source and "self._load_overload(" in source
+    expect(called, "FunctionCache.load_overload", "KernelCache")
+    expect(callable(getattr(rtsys, "initialize", None)), "rtsys.initialize", "KernelCache")
 
 
 def test_dumps_writes_what_pickle_reads() -> None:

@@ -26,17 +26,12 @@ from arkanoid.physics.pairs.table import (
 )
 from arkanoid.physics.shapes.records import KINDS
 from arkanoid.physics.shapes.table import shape_table
+from helpers.bodies import COLLIDERS
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 SAMPLES: tuple[Collider, ...] = (
-    Particle(0.5),
-    HalfPlane((1, 2), 0.25),
-    AxisAlignedHalfPlane("-y", 0.5),
-    AxisAlignedRectangle(2, 1),
-    Rectangle(2, 1, 0.5),
-    Convex([(0, 0), (2, 0), (1, 1.5)]),
-    Convex([(1, 1), (-1, 1), (-1, 0), (1, 0)], [3], 0.25),
+    *COLLIDERS,
     Convex([(1, 1), (-1, 1), (-1, 0), (1, 0)], [0, 2], 1.0),
 )
 PAIRS = list(combinations_with_replacement(SAMPLES, 2))

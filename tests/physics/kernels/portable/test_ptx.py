@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from arkanoid.envs.tensors.entries import STEPS
+from arkanoid.physics.kernels import sealed
 from arkanoid.physics.kernels.portable import Entry, ptx
 
 ENTRIES = [run.entry for run in STEPS["vector"]]
@@ -113,7 +114,7 @@ def test_where_nothing_can_be_written_it_is_made_again(
     def refuse(source: object, target: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(ptx.os, "replace", refuse)
+    monkeypatch.setattr(sealed.os, "replace", refuse)
     assert [ptx.make_ptx(ENTRIES) for _ in range(2)] == ["text 1", "text 2"]
     assert "No space left on device" in capsys.readouterr().err
 
