@@ -125,7 +125,7 @@ def join(
         world, a, b, normal_x, normal_y, restitution, aim, now, now_low
     ):
         return False
-    if not _append(world, a, b, normal_x, normal_y, restitution, aim):
+    if not append(world, a, b, normal_x, normal_y, restitution, aim):
         return False
     if restitution > 0.0:
         progress.elastic = 1
@@ -135,7 +135,7 @@ def join(
 
 
 @kernel
-def _append(
+def append(
     world: WorldView,
     a: int,
     b: int,
@@ -163,7 +163,6 @@ def _append(
     touch.normal_x, touch.normal_y = normal_x, normal_y
     inverse_mass_a, inverse_mass_b = inverse_mass_of(world, a), inverse_mass_of(world, b)
     touch.share_a, touch.share_b = shares(inverse_mass_a, inverse_mass_b)
-    touch.weight = 1.0 / (inverse_mass_a + inverse_mass_b)
     touch.restitution, touch.aim = restitution, aim
     touch.change = 0.0
     return True
