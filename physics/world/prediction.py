@@ -239,11 +239,15 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             is_first = _is_straighter(
                 world, plan, body, other, now, now_low, best, normal_x, normal_y
             )
+            # The first of the two times: until the other one, the body might sink into what it
+            # meets.
+            best = min(best, time)
         else:
             # At the same time, a meeting comes before a crossing.
             is_first = time < best or (time == best and plan.kind != MEET)
+            if is_first:
+                best = time
         if is_first:
-            best = time
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
