@@ -7,6 +7,7 @@ systems, J. Comput. Phys. 94, 1991). A plan holds until one of its two bodies ch
 import math
 
 from ..kernels import kernel
+from ..pairs.seams import covers, lies_along, time_at_end
 from ..pairs.table import impact_between, may_touch
 from ..pairs.touching import margin_along, touch_margins
 from ..pairs.touching_point import shared_stretch
@@ -166,6 +167,69 @@ def _is_straighter(
 
 
 @kernel
+def _is_ground(world: WorldView, count: int, other: int, x: float, y: float) -> bool:
+    """Return whether a static body in ``near``, other than one, covers a point."""
+    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
+    for index in range(count):
+        body = near_of(world)[index]
+        trait = traits[body]
+        if body == other or trait.slot >= 0 or trait.sensor >= 0:
+            continue
+        if covers(shapes, edges, trait.collider, x - trait.home_x, y - trait.home_y):
+            return True
+    return False
+
+
+@kernel
+def _meet_seam(
+    world: WorldView,
+    count: int,
+    own: TraitRecord,
+    other: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+    duration: float,
+    impact: tuple[float, float, float],
+) -> tuple[float, float, float]:
+    """Return the impact on a static body as (time, normal_x, normal_y), if it is at a seam.
+
+    Args:
+        world: the world, with ``count`` bodies in ``near``.
+        own, other: the moving body's traits, and the static body.
+        dx, dy, vx, vy: the static body's place and velocity, relative to the moving one.
+        margin_x, margin_y, duration: as of `impact_between`.
+        impact: what the two would do, were they alone.
+    """
+    shapes, edges, trait = shapes_of(world), edges_of(world), traits_of(world)[other]
+    shape = shapes[trait.collider]
+    for number in range(shape.first, shape.first + shape.count):
+        for side in range(-1, 2, 2):
+            time, x, y = time_at_end(
+                shapes,
+                edges,
+                own.collider,
+                trait.collider,
+                number,
+                side,
+                dx,
+                dy,
+                vx,
+                vy,
+                margin_x,
+                margin_y,
+            )
+            if time == math.inf or time > duration:
+                continue
+            if _is_ground(world, count, other, trait.home_x + x, trait.home_y + y):
+                return time, -edges[number].normal_x, -edges[number].normal_y
+    return impact
+
+
+@kernel
 def predict(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
     """Make a new plan for a body: its first event from now on.
 
@@ -196,7 +260,9 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     own = traits[body]
     x, y, vx, vy = motion_at(world, body, now, now_low)
     best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
-    for index in range(find_near(world, slot, only_later)):
+    is_point = shapes[own.collider].count == 0 and shapes[own.collider].radius == 0.0
+    count = find_near(world, slot, only_later)
+    for index in range(count):
         other = near[index]
         trait = traits[other]
         their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
@@ -205,7 +271,11 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
         if trait.slot < 0 and ux * ux + uy * uy > 0.0:
             coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
             slack = TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy))
-        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
+        may_meet_seam = trait.slot < 0 and own.sensor < 0 and trait.sensor < 0
+        is_point_at_seam = is_point and may_meet_seam
+        if not is_point_at_seam and not may_touch(
+            shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack
+        ):
             continue
         if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
             continue
@@ -225,6 +295,25 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             margin_x,
             margin_y,
         )
+        if is_point_at_seam or (
+            may_meet_seam
+            and time < math.inf
+            and not lies_along(shapes, edges, trait.collider, normal_x, normal_y)
+        ):
+            time, normal_x, normal_y = _meet_seam(
+                world,
+                count,
+                own,
+                other,
+                dx,
+                dy,
+                ux,
+                uy,
+                margin_x,
+                margin_y,
+                best + slack,
+                (time, normal_x, normal_y),
+            )
         if time == math.inf:
             continue
         if time == 0.0 and own.sensor < 0 and trait.sensor < 0:

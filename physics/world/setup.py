@@ -14,6 +14,7 @@ from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
+from ..tolerances import TOUCH
 from .grid import NO_ONE, count_cells, fill_cells
 from .records import Header, Motion, Override, Plan, Progress, Trait
 from .tournament import leaf_count
@@ -216,6 +217,8 @@ def _make_grid(
         cell = max(cell, float(size.max()) / (4.0 * cells))
         header["left"], header["bottom"], header["cell"] = low[0], low[1], cell
         header["columns"], header["rows"] = np.maximum(1, np.ceil(size / cell)).astype(int)
+    # A point on the border of two bodies touches both, whatever rounding says.
+    furthest += 4.0 * TOUCH * float(np.abs(corners).max(initial=0.0))
     cells = int(header["columns"][0] * header["rows"][0])
     covered = np.zeros(len(boxes), np.int64)
     covered[:] = NO_ONE
