@@ -7,7 +7,6 @@ systems, J. Comput. Phys. 94, 1991). A plan holds until one of its two bodies ch
 import math
 
 from ..kernels import kernel
-from ..pairs.table import impact_between, may_touch
 from ..pairs.touching import margin_along
 from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
 from .clock_time import elapsed, is_earlier, later
@@ -16,13 +15,13 @@ from .lookup.boxes import time_to_leave
 from .lookup.inside import find_inside
 from .lookup.neighbours import find_near
 from .lookup.tree import NO_ONE
+from .meetings.impact import impact_of, may_meet
 from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
 from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
-    edges_of,
     motions_of,
     moving_of,
     near_of,
@@ -123,7 +122,7 @@ def _meeting(
     rounding decides. Bodies that touch or overlap meet only if they have to bounce. For so much as
     the slack before they meet, they touch already.
     """
-    shapes, plans, motions = shapes_of(world), plans_of(world), motions_of(world)
+    plans, motions = plans_of(world), motions_of(world)
     body = moving_of(world)[slot]
     own, trait = traits_of(world)[body], traits_of(world)[other]
     motion, plan = motions[slot], plans[slot]
@@ -139,21 +138,11 @@ def _meeting(
         coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
         late = max(late, TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy)))
     left = elapsed(best, best_low, since, since_low) + late
-    if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, left):
+    if not may_meet(world, body, other, dx, dy, ux, uy, left):
         return math.inf, 0.0, 0.0, 0.0
     margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
-    time, normal_x, normal_y = impact_between(
-        shapes,
-        edges_of(world),
-        own.collider,
-        trait.collider,
-        dx,
-        dy,
-        ux,
-        uy,
-        left,
-        margin_x,
-        margin_y,
+    time, normal_x, normal_y = impact_of(
+        world, body, other, dx, dy, ux, uy, left, margin_x, margin_y
     )
     if time == math.inf:
         return math.inf, 0.0, 0.0, 0.0
@@ -284,6 +273,12 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
                 best,
                 best_low,
             )
+            # It is met at the first of the two times: until the other, the body might sink in.
+            if wait > 0.0:
+                begin, begin_low, slack = best, best_low, slack - wait
+            else:
+                best, best_low = begin, begin_low
+                plan.slack += wait
         else:
             # At the same time, a meeting comes before what a body does alone.
             is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)

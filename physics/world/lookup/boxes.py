@@ -11,6 +11,7 @@ import math
 
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
+from ...tolerances import TOUCH
 from ..clock_time import elapsed
 from ..records import Block, PlanRecord
 from ..view import (
@@ -45,10 +46,10 @@ MOST_SHARE = 8.0
 # A box is ahead of the body by this share of the margin, so that the body is in it for longer.
 AHEAD = 0.75
 # It is at least this fraction of the coordinates: far from the origin, smaller steps are rounding.
-# A box is larger than the body and the margin by this fraction of all that made it: more than
-# `TOUCH`, so that the boxes of bodies that touch overlap.
+# A box is larger than the body and the margin by this fraction of all that made it. So the boxes
+# of bodies that touch overlap, and a point at a seam finds both bodies, whatever rounding says.
 FAR = 1e-9
-ROUNDING = 1e-12
+ROUNDING = 4.0 * TOUCH
 
 
 def typical_width(typical: float) -> float:

@@ -4,20 +4,18 @@ import math
 
 from ...kernels import kernel
 from ...pairs.response import shares
-from ...pairs.table import impact_between, may_touch
 from ...pairs.touching import margin_along
 from ..courses import margins_of, motion_at
 from ..view import (
     WorldView,
-    edges_of,
     members_of,
     moving_of,
     places_of,
     progress_of,
-    shapes_of,
     touches_of,
     traits_of,
 )
+from .impact import impact_of, may_meet
 from .pair import restitution_of, velocity_of
 from .passing import inverse_mass_of, passes_by, slowest_hit
 from .ties import is_straighter
@@ -190,14 +188,10 @@ def would_hit(
     speed = max(abs(ux), abs(uy))
     if speed == 0.0:
         return False, 0.0, 0.0
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    one, other = traits[a].collider, traits[b].collider
     duration = _WAY * (margin_x + margin_y) / speed
-    if not may_touch(shapes, one, other, dx, dy, ux, uy, duration):
+    if not may_meet(world, a, b, dx, dy, ux, uy, duration):
         return False, 0.0, 0.0
-    time, normal_x, normal_y = impact_between(
-        shapes, edges, one, other, dx, dy, ux, uy, duration, margin_x, margin_y
-    )
+    time, normal_x, normal_y = impact_of(world, a, b, dx, dy, ux, uy, duration, margin_x, margin_y)
     if time == math.inf:
         return False, 0.0, 0.0
     closing = -(ux * normal_x + uy * normal_y)
