@@ -26,6 +26,7 @@ from .output import OutputError, checked_output, harmless_notes
 COMMANDS = {
     "play": "play by hand, in a window",
     "replay": "show a recorded game, export it or check it",
+    "web": "play and watch agents in a browser, or write a page that does it",
     "levels": "list the named levels, or draw any level",
     "train": "train PPO on the game, then compare it with the baselines",
     "reproduce": "train a run again and compare its weights, bit for bit",
@@ -38,7 +39,7 @@ COMMANDS = {
     "warm-up": "compile all that the game needs, so that nothing waits for it later",
 }
 # These take no settings, ``--key value``.
-_WITHOUT_SETTINGS = {"play", "replay", "levels", "warm-up"}
+_WITHOUT_SETTINGS = {"play", "replay", "web", "levels", "warm-up"}
 
 # Packages that only some commands need -> the extra that installs them.
 _EXTRAS = {

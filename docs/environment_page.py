@@ -194,24 +194,21 @@ worlds = gym.make_vec(
 )
 ```
 
-This page holds for all of them, as a single and as a vector environment. Most ids are for tools
-that take an id and no keywords; the two with `NoFrameskip` are for scripts that wrap the Atari
-games of that name.
+Most ids are for tools that take no keywords; the two with `NoFrameskip` are for scripts that wrap
+the Atari games of that name.
 
 ## Description
 
-The player moves a paddle at the bottom of a field of
-{rules.FIELD_WIDTH:g} × {rules.FIELD_HEIGHT:g} brick widths and keeps a ball from falling out. The
-ball breaks bricks. The place on the paddle where the ball lands decides its angle. Some bricks hide
-capsules. A capsule lets the paddle catch balls, grow or shoot, slows the ball down, splits it into
-three, opens a gate to the next round, or gives a life. Enemies come through the ceiling and get in
-the ball's way ([pictures of all](things.md)). Twelve rounds lead to a boss; after it,
-generated rounds get harder and harder without end (see [levels](levels.md)). The rules follow the
-arcade game of 1986; the levels and pictures are our own.
+A paddle at the bottom of a field of {rules.FIELD_WIDTH:g} × {rules.FIELD_HEIGHT:g} brick widths
+keeps a ball from falling out, and the ball breaks bricks. The place on the paddle where it lands
+decides its angle. Some bricks hide capsules, which give the paddle powers; enemies come through the
+ceiling and get in the ball's way ([all of them](things.md)). Twelve rounds lead to a boss; after
+it, generated rounds get harder without end ([levels](levels.md)). The rules follow the arcade game
+of 1986; the levels and pictures are our own.
 
-A tick is 1/{rules.TICKS_PER_SECOND} s. Things touch at their exact time (see
-[the engine](engine.md)): a ball of any speed passes through nothing. The same seed and actions give
-the same game bit for bit, alone or in a batch, on any number of threads.
+A tick is 1/{rules.TICKS_PER_SECOND} s. Collisions are [exact](engine.md): a ball of any speed
+passes through nothing. The same seed and actions give the same game bit for bit, alone or in a
+batch, on any number of threads.
 
 ## Action Space
 
@@ -221,10 +218,9 @@ the same game bit for bit, alone or in a batch, on any number of threads.
 
 {observation_table()}
 
-The parts have names: `env.unwrapped.layout` maps them to slices of an observation's first axis, as
-in `observation[env.unwrapped.layout["paddle"]]`. Numbers lie in [-1, 1]; a velocity is 1 at the
-speed in parentheses. Games without capsules and enemies have only the parts up to `bricks`
-(`vector`) or `ball_held` (`grid`).
+`env.unwrapped.layout` maps the names of parts to slices of an observation's first axis, as in
+`observation[env.unwrapped.layout["paddle"]]`. A velocity is 1 at the speed in parentheses. Games
+without capsules and enemies have only the parts up to `bricks` (`vector`) or `ball_held` (`grid`).
 
 ### `vector`
 
@@ -235,18 +231,17 @@ the ceiling. Numbers of things that are not there are 0.
 
 With `reward="score"`, two parts follow, which say what pays: {further_parts(vector.PAY_PARTS)}.
 
-With `landing=True`, three parts come last: {further_parts(LANDING_PARTS)}.
-Each ball flies alone, exactly as in the game, among walls, bricks and the boss as they stand. It
-breaks bricks on its way; there are no enemies. A held ball is there already. A landing is unknown
-if the ball would clear the round first, has more than {LANDING_IMPACTS} impacts, or is already
-below the paddle's upper side.
+With `landing=True`, three parts come last: {further_parts(LANDING_PARTS)}. Each ball flies as in
+the game, but alone and without enemies, and breaks bricks on its way. A held ball is there already.
+A landing is unknown if the ball would clear the round first, has more than {LANDING_IMPACTS}
+impacts, or is already below the paddle's upper side.
 
 ### `grid`
 
 A cell is as large as a brick, 1 by 1/2. Row 0 lies under the ceiling, the lattice of bricks is rows
 2 to 19, and the paddle is in row 24. A moving thing has a weight of 1, shared among the four cells
-whose middles surround it; the nearer the cell, the larger its share. Its motion is its velocity,
-shared in the same way. Where things share a cell, their numbers are added and clipped.
+whose middles surround it: the nearer, the more. Its velocity is shared in the same way. Where
+things share a cell, their numbers are added and clipped.
 
 {part_table(planes.CORE_PARTS + planes.EXTRA_PARTS)}
 
@@ -258,14 +253,12 @@ the points to the next life / {rules.EXTRA_LIFE_EVERY}; with other rewards it is
 ### `rgb`
 
 Pictures as `render` shows them, `[stack * channels, height, width]`, or with `channels="last"`
-`[height, width, stack * channels]`. No display is needed. At a reset the first picture fills the
-stack.
+`[height, width, stack * channels]`. At a reset the first picture fills the stack.
 
 Pictures with less than 8 pixels per brick width (84 × 84, say) have no score line. The field's
-lowest two rows of cells, below the paddle, show the status instead; nothing else is drawn there.
-A unit is half a brick wide and as high as a brick: at 84 × 84, 3 × 3 pixels, and the units begin at
-row 78 and column 9. `arkanoid.envs.draw.status.status_layout(height, width)` returns the rows and
-columns of pixels of each part.
+lowest two rows of cells, below the paddle, show the status instead. A unit is half a brick wide and
+as high as a brick: at 84 × 84, 3 × 3 pixels, and the units begin at row 78 and column 9.
+`arkanoid.envs.draw.status.status_layout(height, width)` returns the pixels of each part.
 
 {status_table()}
 
@@ -273,41 +266,33 @@ In such pictures the ball is white, and everything else is darker than 226 of 25
 
 ### `dict`
 
-A dictionary with the pictures as `"rgb"` and the numbers as `"vector"`. `layout` has the layout of
-each under its name.
+The pictures as `"rgb"` and the numbers as `"vector"`. `layout` has the layouts under these names.
 
 ## Rewards
 
 {rewards}
 
-`life_penalty` is taken off for each lost life. Nothing is paid for touching the ball or for staying
-alive.
+Each lost life costs `life_penalty`. Nothing is paid for touching the ball or for staying alive.
 
 A round is cleared when its last breakable brick is broken and the boss, if there is one, is beaten.
-It is also cleared when the paddle leaves through the gate that the capsule *break* opens: then
+It is also cleared when the paddle leaves through the gate that the capsule *break* opens:
 `'progress'` and `'sparse'` pay 1 for it, however many bricks still stand.
 
 ## Points
 
-- Coloured bricks: {rules.COLOUR_POINTS[0]} to {rules.COLOUR_POINTS[-1]} points each (see
-  [levels](levels.md#level-files)).
+- Coloured bricks: [{rules.COLOUR_POINTS[0]} to {rules.COLOUR_POINTS[-1]}](levels.md#level-files).
 - Silver: {rules.SILVER_POINTS} times the round's number, when it breaks.
 - A caught capsule: {rules.CAPSULE_POINTS:,}. A destroyed enemy: {rules.ENEMY_POINTS}.
-- Each hit on the boss: {rules.BOSS_POINTS:,}.
-- The way through the gate: {rules.BREAK_POINTS:,}.
+- Each hit on the boss: {rules.BOSS_POINTS:,}. The way through the gate: {rules.BREAK_POINTS:,}.
 
-The player gains a life at {rules.EXTRA_LIFE_FIRST:,} points and at every multiple of
-{rules.EXTRA_LIFE_EVERY:,}.
-
-The powers *catch*, *enlarge* and *laser* replace each other. A power survives a cleared round; a
-lost life ends it.
+{rules.EXTRA_LIFE_FIRST:,} points and every multiple of {rules.EXTRA_LIFE_EVERY:,} bring a life.
 
 ## Starting State
 
 All bricks of the first round stand, and the ball lies on the middle of the paddle. Fire serves it;
 after {rules.SERVE_TICKS} ticks it serves itself.
 
-`reset(seed=..., options=...)` determines everything that follows: with a seed, the game forgets the
+`reset(seed=..., options=...)` determines everything that follows; with a seed, the game forgets the
 options of earlier resets. A seed is an integer from 0 to 2^64 - 1. In a vector environment an
 integer, at most 2^64 - `num_envs`, gives game `i` the seed `seed + i`; a list gives each game its
 own. A reset without a seed continues the random numbers. The options are:
@@ -317,33 +302,31 @@ own. A reset without a seed continues the random numbers. The options are:
 An option stays in force for later episodes until a reset changes it or has a seed; None returns to
 the configuration.
 
-A vector environment's `set_start(world, options)` says how the next games of a world begin, and its
-present game goes on: so a training can choose levels while worlds restart by themselves.
+A vector environment's `set_start(world, options)` says how the next games of a world begin; its
+present game goes on.
 
 ## Episode End
 
 - *Terminated*: the last life is lost.
 - *Truncated*: after `max_decisions` decisions (`info["truncation"]` is {DECISION_LIMIT}).
 
-Idling is no way out: {rules.IDLE_TICKS:,} ticks without damage to a brick or the boss cost a life,
-as a lost ball does. All balls in play are gone then, and the next one is served. Each new serve and
-each damage start the idle clock anew. Observations show both clocks.
+A cleared round does not end an episode. With [`episodic_life=True`](#arguments) each lost life
+does; the game is over when `info["lives"]` is 0 or the episode was truncated.
 
-A cut ends the rewards, but not the game: training should count the value of the last observation,
-as `arkanoid train` does. Otherwise it would pay to keep the lives until `max_decisions`. The
-`life_penalty` is also due for extra lives: if it exceeds what a life earns, extra lives are a loss.
+{rules.IDLE_TICKS:,} ticks without damage to a brick or the boss cost a life: all balls in play are
+gone. Each serve and each damage start this clock anew. Observations show it, and that of
+`max_decisions`.
+
+After a cut, training should count the value of the last observation, as `arkanoid train` does.
+Otherwise it would pay to keep the lives until `max_decisions`. If `life_penalty` exceeds what a
+life earns, extra lives are a loss.
 
 Before the first reset, a step, a frame or masks raise `gymnasium.error.ResetNeeded`. So does a step
 after an episode's end, unless the vector environment resets by itself (`autoreset_mode`).
 
-A cleared round does not end an episode: the next round begins. With `episodic_life=True` each lost
-life ends an episode (*terminated*), and the next one begins where the game is; the game is the same
-bit for bit. It is over when `info["lives"]` is 0 or the episode was truncated. The clocks are those
-of the game.
-
 Where Gymnasium's own `TimeLimit` truncates (`gym.make(..., max_episode_steps=n)`),
-`info["truncation"]` is 0, because the environment cannot know; `max_decisions=n` does the same and
-says so. `env.spec.max_episode_steps` is `max_decisions`, for wrappers that ask.
+`info["truncation"]` is 0; `max_decisions=n` does the same and says so. `env.spec.max_episode_steps`
+is `max_decisions`.
 
 ## Information
 
@@ -361,9 +344,9 @@ The vector environment also takes:
 
 {table(("keyword", "default", "meaning"), vector_keywords)}
 
-An environment belongs to one thread at a time: a call of `step`, `reset`, `snapshot`, `restore` or
-`spread` while another thread is in one of them raises a RuntimeError. A forked process may go on
-with its copy.
+An environment belongs to one thread at a time: `step`, `reset`, `snapshot`, `restore` and `spread`
+raise a RuntimeError while another thread is in one of them. A forked process may go on with its
+copy.
 
 ## Methods
 

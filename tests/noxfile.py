@@ -117,6 +117,8 @@ def build(session: nox.Session, folder: Path) -> tuple[Path, Path]:
     The wheel is built from the source distribution: one that is built in the tree would also hold
     what earlier builds left there.
     """
+    ship = (sys.executable, "-m", "arkanoid.envs.browser.shipped")
+    session.run_install(*ship, external=True, silent=True)
     command = (sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT))
     session.run_install(*command, external=True, silent=True)
     (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")

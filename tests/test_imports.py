@@ -36,6 +36,7 @@ ORDER = {
     """,
     "configs": "",
     "envs": """
+        browser
         registration
         tensor_vector_env
         arkanoid_env vector_env
@@ -53,6 +54,7 @@ ORDER = {
         cli
         commands
         show
+        browser
         learn
         measure
         experiment pretrained

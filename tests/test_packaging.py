@@ -18,7 +18,7 @@ NOT_PACKAGES = ("tests/", "docs/", ".")  # folders of the root
 # The files of constraints, and the extras that are installed under each.
 LOCKS = {
     "constraints.txt": (
-        *("train", "play", "minari", "gpu", "mlflow", "wandb", "bench", "docs", "dev"),
+        *("train", "play", "minari", "gpu", "mlflow", "wandb", "web", "bench", "docs", "dev"),
     ),
     "constraints-ray.txt": ("train", "ray"),
 }

@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Play until the window is closed; return the exit status (130 after Ctrl-C)."""
     level = None if arguments.level == NAMED else arguments.level
     film = arkanoid("film", "game.gif", *([] if level is None else ["--level", quoted(level)]))
-    require_screen(f"a film of the agent that comes with the package needs none: {film}")
+    require_screen(f"a film of an agent in the package needs none: {film}")
     # The game imports Numba, which is slow.
     from ...envs.levels import CAMPAIGN
     from ...envs.play.by_hand import hand_config, play_by_hand

@@ -123,7 +123,7 @@ def load_policy(model: ModelFile, experiment: Experiment) -> Policy:
     """
     torch.set_num_threads(experiment.training.torch_threads)
     device = _playing_device(model, experiment)
-    network = _unpickled(model.path) if model.run.trusted else _rebuilt(model, experiment)
+    network = _unpickled(model.path) if model.run.trusted else rebuild_network(model, experiment)
     settings = experiment.evaluation
     seed = spread_seed(settings.seed, Purpose.EVALUATION_POLICY)
     return ModelPolicy(network.to(device), settings.deterministic, seed)
@@ -200,8 +200,11 @@ class _UnfilledPolicy(ActorCriticPolicy):
         return torch.device("meta") if first is None else first.device
 
 
-def _rebuilt(model: ModelFile, experiment: Experiment) -> BasePolicy:
-    """Return the run's network with the weights of the file."""
+def rebuild_network(model: ModelFile, experiment: Experiment) -> BasePolicy:
+    """Return the run's network with the weights of the file; no code is run.
+
+    Raises `SettingsError` if the file cannot be read or holds another network.
+    """
     # An evaluation can change the game, but not the network.
     policy = _unfilled(replace(experiment, network=model.run.experiment().network))
     try:

@@ -33,6 +33,7 @@ extensions = [
     "folders",
     "mathml",
     "myst_parser",
+    "playable",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",

@@ -16,7 +16,7 @@ from .replays import NOTE_EVERY, GameStart, Replay, Result
 # `NOTE_EVERY` its value is noted.
 CHECK_EVERY = 16
 # What it runs over. These fields are all that a game's course depends on, but for a few counters.
-_CHECKED = (
+CHECKED = (
     "random",
     "decisions",
     "idle",
@@ -58,7 +58,7 @@ def _as_recorded(name: str) -> tuple[str, "np.dtype[Any]", tuple[int, ...]]:
 
 
 # Without gaps, and in this order: so a checksum does not depend on how the state is laid out.
-_Checked = np.dtype([_as_recorded(name) for name in _CHECKED])
+Checked = np.dtype([_as_recorded(name) for name in CHECKED])
 
 
 class Recorder:
@@ -86,7 +86,7 @@ class Recorder:
         self._batch = batch
         self._world = world
         self._command = batch.commands[world]
-        self._checked = np.zeros((), _Checked)
+        self._checked = np.zeros((), Checked)
         self._changes = batch.changes
         self._recording = False
         self._over = False
@@ -201,7 +201,7 @@ class Recorder:
 
     def _check(self, decisions: int) -> None:
         state = self._batch.worlds[self._world]
-        for name in _CHECKED:
+        for name in CHECKED:
             self._checked[name] = state[name]
         self._checksum = zlib.crc32(self._checked.tobytes(), self._checksum)
         if decisions % NOTE_EVERY == 0:

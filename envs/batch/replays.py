@@ -166,7 +166,7 @@ class Replay:
             "version": self.version,
             "rules": RULES_VERSION,
             "config": self.config.plain(),
-            "levels": _plain_plan(self.plan),
+            "levels": plain_plan(self.plan),
             "start": asdict(self.start),
             "result": asdict(self.result),
             "checksums": self.checksums,
@@ -295,7 +295,8 @@ def _kinds(letters: str) -> list[int]:
     return [BRICK_LETTERS.index(letter) for letter in letters.ljust(CELLS, BRICK_LETTERS[0])]
 
 
-def _plain_plan(plan: LevelPlan) -> dict[str, Any]:
+def plain_plan(plan: LevelPlan) -> dict[str, Any]:
+    """Return a plan as JSON holds it."""
     return {
         "names": plan.names,
         "bricks": [_letters(level["kind"]) for level in plan.table],
@@ -307,7 +308,7 @@ def _plain_plan(plan: LevelPlan) -> dict[str, Any]:
 
 
 def _read_plan(plain: dict[str, Any]) -> LevelPlan:
-    """Return the plan that `_plain_plan` wrote."""
+    """Return the plan that `plain_plan` wrote."""
     if len(plain["boss"]) != len(plain["bricks"]):  # NumPy would repeat a single one
         raise ValueError("no game has such levels")
     table = np.zeros(len(plain["bricks"]), LevelEntry)

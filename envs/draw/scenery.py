@@ -1,6 +1,5 @@
 """What all pictures of one size share: the background, and each look of a brick."""
 
-import itertools
 import math
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
@@ -8,9 +7,9 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ...physics.kernels import kernel
-from ..rules import COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, GATE_X, GOLD, ROWS, SILVER
-from .font import draw_text, encode
+from ...physics.kernels import inlined, kernel
+from ..rules import COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, GATE_X, GATES, GOLD, ROWS, SILVER
+from .font import Codes, draw_text, encode
 from .palette import (
     BRICK_BODY,
     BRICK_FOOT,
@@ -48,6 +47,8 @@ from .view import (
     EXIT_TOP,
     GATE_WIDTH,
     HEADER_SCALE,
+    STATUS_LINES,
+    STATUS_UNITS,
     WALL_WIDTH,
     ViewRecord,
     Views,
@@ -56,6 +57,8 @@ from .view import (
 )
 
 Palette: TypeAlias = Any  # float64 [colours, channels]
+# Left, bottom, right and top in the field; or two points.
+Box: TypeAlias = tuple[float, float, float, float]
 Looks: TypeAlias = Any  # uint8 [LOOKS, rows, columns, channels], the lattice full of each look
 
 # The score line's labels and values: upper side, height and left ends, in brick widths.
@@ -72,6 +75,24 @@ LIVES_X = 7.1
 DAMAGED = GOLD
 DAMAGES = 3
 LOOKS = GOLD + 1 + DAMAGES
+
+# The labels' letters.
+SCORE_LABEL, ROUND_LABEL, LIVES_LABEL = encode("SCORE"), encode("ROUND"), encode("LIVES")
+
+# Half a hexagon around its middle: three of its sides; the neighbours draw the others.
+_RISE = math.sqrt(0.75)
+HEXAGON = np.array([(1.0, 0.0), (0.5, _RISE), (-0.5, _RISE), (-1.0, 0.0)])
+# The rivets of the side walls and of the ceiling, x and y.
+_BESIDE = [
+    (x, y)
+    for y in (0.5, 4.25, 6.25, 8.25, 10.25, 12.25)
+    for x in (-WALL_WIDTH / 2, FIELD_WIDTH + WALL_WIDTH / 2)
+]
+_ABOVE = [
+    (x, FIELD_HEIGHT + WALL_WIDTH / 2)
+    for x in (-WALL_WIDTH / 2, 1.25, 4.25, 6.75, 9.75, FIELD_WIDTH + WALL_WIDTH / 2)
+]
+RIVETS = np.array(_BESIDE + _ABOVE)
 
 MORTAR = 0.04  # between bricks
 BEVEL = 0.07  # a brick's lit and shaded edges
@@ -114,134 +135,163 @@ def make_scenery(height: int, width: int, channels: int) -> Scenery:
     view = make_view(height, width)
     palette = palette_for(not view[0].header, channels)
     background = np.zeros((height, width, channels), np.uint8)
-    painter = _Painter(background, view[0], palette)
-    _draw_backdrop(painter)
-    _draw_walls(painter)
-    if view[0].header:
-        _draw_pattern(painter)
-        _draw_labels(painter)
-    else:
-        lines, units = view[0].lines, view[0].units
-        background[lines[0] : lines[-1], units[0] : units[-1]] = np.rint(palette[STATUS])
-    rows, columns = view[0].rows, view[0].columns
-    lattice = background[rows[0] : rows[-1], columns[0] : columns[-1]]
-    looks = np.repeat(lattice[np.newaxis], LOOKS, axis=0)
-    draw_looks(looks, view, palette)
+    rows, columns = lattice_size(view[0])
+    looks = np.zeros((LOOKS, rows, columns, channels), np.uint8)
+    draw_scenery(background, looks, view, palette)
     shared = Scenery(
         view,
         palette,
         background.reshape(height, width * channels),
-        looks.reshape(LOOKS, lattice.shape[0], -1),
+        looks.reshape(LOOKS, rows, -1),
     )
     for array in shared:
         array.flags.writeable = False
     return shared
 
 
-class _Painter:
-    """Draws into a picture in the field's coordinates and the palette's colours."""
-
-    def __init__(self, image: NDArray[np.uint8], view: ViewRecord, palette: Palette) -> None:
-        self.image = image
-        self.view = view
-        self.palette = palette
-
-    def rectangle(self, box: tuple[float, ...], upper: int, lower: int) -> None:
-        """Fill a box (left, bottom, right, top) with a gradient."""
-        left, bottom = to_pixels(self.view, box[0], box[1])
-        right, top = to_pixels(self.view, box[2], box[3])
-        colours = self.palette[upper], self.palette[lower]
-        fill_rectangle(self.image, left, top, right, bottom, *colours)
-
-    def line(self, ends: tuple[float, ...], width: float, colour: int) -> None:
-        """Draw a line between two points (x, y, x, y)."""
-        start, end = to_pixels(self.view, ends[0], ends[1]), to_pixels(self.view, ends[2], ends[3])
-        width = float(width * self.view.scale)
-        draw_line(self.image, *start, *end, width, self.palette[colour])
-
-    def disc(self, x: float, y: float, radius: float, colour: int) -> None:
-        """Fill a disc."""
-        radius = float(radius * self.view.scale)
-        fill_disc(self.image, *to_pixels(self.view, x, y), radius, self.palette[colour])
-
-    def text(self, text: str, x: float, y: float, height: float, colour: int) -> None:
-        """Draw a text; x, y: its upper left corner."""
-        height = float(height * self.view.scale)
-        draw_text(
-            self.image, encode(text), *to_pixels(self.view, x, y), height, self.palette[colour]
-        )
+@kernel
+def lattice_size(view: ViewRecord) -> tuple[int, int]:
+    """Return how many rows and columns of pixels the lattice has."""
+    return view.rows[ROWS] - view.rows[0], view.columns[COLUMNS] - view.columns[0]
 
 
-def _draw_backdrop(painter: _Painter) -> None:
+@kernel
+def draw_scenery(background: Image, looks: Looks, views: Views, palette: Palette) -> None:
+    """Draw what pictures share.
+
+    Args:
+        background: uint8 [height, width, channels].
+        looks: uint8 [LOOKS, rows, columns, channels].
+        views: of the picture's size; palette: with as many channels.
+    """
+    view = views[0]
+    _draw_backdrop(background, view, palette)
+    _draw_walls(background, view, palette)
+    if view.header == 1:
+        _draw_pattern(background, view, palette)
+        _draw_labels(background, view, palette)
+    else:
+        _draw_status_ground(background, view, palette)
+    top, left = view.rows[0], view.columns[0]
+    for look in range(LOOKS):
+        for row in range(looks.shape[1]):
+            for column in range(looks.shape[2]):
+                for channel in range(looks.shape[3]):
+                    pixel = background[top + row, left + column, channel]
+                    looks[look, row, column, channel] = pixel
+    draw_looks(looks, views, palette)
+
+
+@kernel
+def _rectangle(image: Image, view: ViewRecord, box: Box, upper: Colour, lower: Colour) -> None:
+    """Fill a box of the field with a gradient."""
+    left, bottom = to_pixels(view, box[0], box[1])
+    right, top = to_pixels(view, box[2], box[3])
+    fill_rectangle(image, left, top, right, bottom, upper, lower)
+
+
+@kernel
+def _line(image: Image, view: ViewRecord, ends: Box, width: float, colour: Colour) -> None:
+    """Draw a line between two points of the field."""
+    start_x, start_y = to_pixels(view, ends[0], ends[1])
+    end_x, end_y = to_pixels(view, ends[2], ends[3])
+    draw_line(image, start_x, start_y, end_x, end_y, width * view.scale, colour)
+
+
+@inlined
+def _draw_backdrop(image: Image, view: ViewRecord, palette: Palette) -> None:
     """Fill the picture and, in it, the field."""
-    height, width = float(painter.image.shape[0]), float(painter.image.shape[1])
-    frame = painter.palette[FRAME]
-    fill_rectangle(painter.image, 0.0, 0.0, width, height, frame, frame)
-    painter.rectangle((0.0, 0.0, FIELD_WIDTH, FIELD_HEIGHT), FIELD_UPPER, FIELD_LOWER)
+    height, width = float(image.shape[0]), float(image.shape[1])
+    frame = palette[FRAME]
+    fill_rectangle(image, 0.0, 0.0, width, height, frame, frame)
+    field = 0.0, 0.0, FIELD_WIDTH, FIELD_HEIGHT
+    _rectangle(image, view, field, palette[FIELD_UPPER], palette[FIELD_LOWER])
 
 
-def _draw_pattern(painter: _Painter) -> None:
+@inlined
+def _draw_pattern(image: Image, view: ViewRecord, palette: Palette) -> None:
     """Draw a faint tiling of the field: hexagons with sides of one brick width."""
-    rise = math.sqrt(0.75)
-    # Three sides of each hexagon, relative to its middle; the neighbours draw the others.
-    outline = ((1.0, 0.0), (0.5, rise), (-0.5, rise), (-1.0, 0.0))
+    rise = HEXAGON[1, 1]
     for column in range(9):
         for row in range(-1, 9):
             x, y = 1.5 * column - 0.5, 2 * rise * (row + column % 2 / 2)
-            for start, end in itertools.pairwise(outline):
-                ends = (x + start[0], y + start[1], x + end[0], y + end[1])
-                middle_x, middle_y = (ends[0] + ends[2]) / 2, (ends[1] + ends[3]) / 2
+            for side in range(HEXAGON.shape[0] - 1):
+                start_x, start_y = x + HEXAGON[side, 0], y + HEXAGON[side, 1]
+                end_x, end_y = x + HEXAGON[side + 1, 0], y + HEXAGON[side + 1, 1]
+                middle_x, middle_y = (start_x + end_x) / 2, (start_y + end_y) / 2
                 if 0.0 < middle_x < FIELD_WIDTH and 0.0 < middle_y < FIELD_HEIGHT:
-                    painter.line(ends, 0.035, PATTERN)
+                    _line(image, view, (start_x, start_y, end_x, end_y), 0.035, palette[PATTERN])
 
 
-def _draw_walls(painter: _Painter) -> None:
+@inlined
+def _draw_walls(image: Image, view: ViewRecord, palette: Palette) -> None:
     """Draw the side walls and, in large pictures, the ceiling, with their closed gates."""
-    header = painter.view.header
-    top = FIELD_HEIGHT + (WALL_WIDTH if header else 0.0)
-    for left in (-WALL_WIDTH, FIELD_WIDTH):
-        _draw_wall(painter, (left, 0.0, left + WALL_WIDTH, top))
-    if not header:
+    top = FIELD_HEIGHT + (WALL_WIDTH if view.header == 1 else 0.0)
+    left, right = -WALL_WIDTH, FIELD_WIDTH + WALL_WIDTH
+    _draw_wall(image, view, palette, (left, 0.0, 0.0, top))
+    _draw_wall(image, view, palette, (FIELD_WIDTH, 0.0, right, top))
+    if view.header == 0:
         return
-    _draw_wall(painter, (-WALL_WIDTH, FIELD_HEIGHT, FIELD_WIDTH + WALL_WIDTH, top))
-    for y in (0.5, 4.25, 6.25, 8.25, 10.25, 12.25):
-        for x in (-WALL_WIDTH / 2, FIELD_WIDTH + WALL_WIDTH / 2):
-            painter.disc(x, y, 0.09, RIVET)
-    for x in (-WALL_WIDTH / 2, 1.25, 4.25, 6.75, 9.75, FIELD_WIDTH + WALL_WIDTH / 2):
-        painter.disc(x, FIELD_HEIGHT + WALL_WIDTH / 2, 0.09, RIVET)
-    for x in GATE_X:
-        half = GATE_WIDTH / 2
-        box = (x - half, FIELD_HEIGHT, x + half, FIELD_HEIGHT + WALL_WIDTH)
-        _draw_door(painter, box, (x, box[1], x, box[3]))
+    _draw_wall(image, view, palette, (left, FIELD_HEIGHT, right, top))
+    for rivet in range(RIVETS.shape[0]):
+        x, y = to_pixels(view, RIVETS[rivet, 0], RIVETS[rivet, 1])
+        fill_disc(image, x, y, 0.09 * view.scale, palette[RIVET])
+    for gate in range(GATES):
+        x, half = GATE_X[gate], GATE_WIDTH / 2
+        box = x - half, FIELD_HEIGHT, x + half, top
+        _draw_door(image, view, palette, box, (x, FIELD_HEIGHT, x, top))
     middle = (EXIT_BOTTOM + EXIT_TOP) / 2
-    box = (FIELD_WIDTH, EXIT_BOTTOM, FIELD_WIDTH + WALL_WIDTH, EXIT_TOP)
-    _draw_door(painter, box, (box[0], middle, box[2], middle))
+    box = FIELD_WIDTH, EXIT_BOTTOM, right, EXIT_TOP
+    _draw_door(image, view, palette, box, (FIELD_WIDTH, middle, right, middle))
 
 
-def _draw_wall(painter: _Painter, box: tuple[float, ...]) -> None:
+@kernel
+def _draw_wall(image: Image, view: ViewRecord, palette: Palette, box: Box) -> None:
     """Draw a straight piece of wall, lit from the upper left."""
     left, bottom, right, top = box
     edge = 0.08
-    painter.rectangle(box, WALL_SHADED, WALL_SHADED)
-    painter.rectangle((left, bottom, right - edge, top), WALL_LIT, WALL_LIT)
-    painter.rectangle((left + edge, bottom, right - edge, top - edge), WALL, WALL)
+    lit, shaded, wall = palette[WALL_LIT], palette[WALL_SHADED], palette[WALL]
+    _rectangle(image, view, box, shaded, shaded)
+    _rectangle(image, view, (left, bottom, right - edge, top), lit, lit)
+    _rectangle(image, view, (left + edge, bottom, right - edge, top - edge), wall, wall)
 
 
-def _draw_door(
-    painter: _Painter, box: tuple[float, float, float, float], seam: tuple[float, ...]
-) -> None:
-    """Draw a closed gate in a wall: two wings that meet at a seam (x, y, x, y)."""
+@kernel
+def _draw_door(image: Image, view: ViewRecord, palette: Palette, box: Box, seam: Box) -> None:
+    """Draw a closed gate in a wall: two wings that meet at a seam."""
     left, bottom, right, top = box
     edge = 0.04
-    painter.rectangle(box, SEAM, SEAM)
-    painter.rectangle((left + edge, bottom + edge, right - edge, top - edge), DOOR, WALL_SHADED)
-    painter.line(seam, 0.06, SEAM)
+    dark, door, shaded = palette[SEAM], palette[DOOR], palette[WALL_SHADED]
+    inside = left + edge, bottom + edge, right - edge, top - edge
+    _rectangle(image, view, box, dark, dark)
+    _rectangle(image, view, inside, door, shaded)
+    _line(image, view, seam, 0.06, dark)
 
 
-def _draw_labels(painter: _Painter) -> None:
+@inlined
+def _draw_labels(image: Image, view: ViewRecord, palette: Palette) -> None:
     """Draw the labels of the score line."""
-    for text, x in (("SCORE", SCORE_X), ("ROUND", ROUND_X), ("LIVES", LIVES_X)):
-        painter.text(text, x, LABEL_TOP, LABEL_HEIGHT, LABEL)
+    _draw_label(image, view, palette, SCORE_LABEL, SCORE_X)
+    _draw_label(image, view, palette, ROUND_LABEL, ROUND_X)
+    _draw_label(image, view, palette, LIVES_LABEL, LIVES_X)
+
+
+@kernel
+def _draw_label(
+    image: Image, view: ViewRecord, palette: Palette, codes: Codes, left: float
+) -> None:
+    """Draw a label of the score line."""
+    x, y = to_pixels(view, left, LABEL_TOP)
+    draw_text(image, codes, x, y, LABEL_HEIGHT * view.scale, palette[LABEL])
+
+
+@inlined
+def _draw_status_ground(image: Image, view: ViewRecord, palette: Palette) -> None:
+    """Fill the lines of the status."""
+    for row in range(view.lines[0], view.lines[STATUS_LINES]):
+        for column in range(view.units[0], view.units[STATUS_UNITS]):
+            for channel in range(image.shape[2]):
+                image[row, column, channel] = round(palette[STATUS, channel])
 
 
 @kernel

@@ -5,6 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from ...physics.kernels import kernel
 from ...physics.kernels.layouts import record_dtype
 from ..rules import BRICK_HEIGHT, COLUMNS, FIELD_HEIGHT, FIELD_WIDTH, LATTICE_TOP, ROWS
 
@@ -49,29 +50,36 @@ Views: TypeAlias = Any  # `View` [1]
 
 def make_view(height: int, width: int) -> Views:
     """Return where the field lies in a picture, `View` [1]: centred, as large as fits."""
-    view = np.zeros(1, View)
-    record = view[0]
+    views = np.zeros(1, View)
+    lay_view(views[0], height, width)
+    return views
+
+
+@kernel
+def lay_view(view: ViewRecord, height: int, width: int) -> None:
+    """Write what `make_view` returns into a `View` record."""
     scale = min(height / FULL_HEIGHT, width / FULL_WIDTH)
-    record.header = scale >= HEADER_SCALE
-    shown = FULL_HEIGHT if record.header else FIELD_HEIGHT
+    header = scale >= HEADER_SCALE
+    shown = FULL_HEIGHT if header else FIELD_HEIGHT
     scale = min(height / shown, width / FULL_WIDTH)
-    record.scale = scale
-    record.left = round((width - FIELD_WIDTH * scale) / 2)
-    record.bottom = round((height + shown * scale) / 2)
+    view.scale = scale
+    view.header = 1 if header else 0
+    view.left = round((width - FIELD_WIDTH * scale) / 2)
+    view.bottom = round((height + shown * scale) / 2)
     for column in range(COLUMNS + 1):
-        record.columns[column] = math.floor(record.left + column * scale + 0.5)
+        view.columns[column] = math.floor(view.left + column * scale + 0.5)
     for row in range(ROWS + 1):
         y = LATTICE_TOP - row * BRICK_HEIGHT
-        record.rows[row] = math.floor(record.bottom - y * scale + 0.5)
+        view.rows[row] = math.floor(view.bottom - y * scale + 0.5)
     for line in range(STATUS_LINES + 1):
         y = (STATUS_LINES - line) * BRICK_HEIGHT
-        record.lines[line] = min(height, math.floor(record.bottom - y * scale + 0.5))
+        view.lines[line] = min(height, math.floor(view.bottom - y * scale + 0.5))
     for unit in range(STATUS_UNITS + 1):
-        record.units[unit] = math.floor(record.left + unit * scale / 2 + 0.5)
-    record.ground = min(height, math.ceil(record.bottom)) if record.header else record.lines[0]
-    return view
+        view.units[unit] = math.floor(view.left + unit * scale / 2 + 0.5)
+    view.ground = min(height, math.ceil(view.bottom)) if header else view.lines[0]
 
 
+@kernel
 def to_pixels(view: ViewRecord, x: float, y: float) -> tuple[float, float]:
     """Return the pixel coordinates of a point of the field."""
     return float(view.left + x * view.scale), float(view.bottom - y * view.scale)

@@ -19,7 +19,7 @@ SHOWN_CAPSULES = 1  # 1: numbers of capsules, powers or beams are not all zero
 SHOWN_ENEMIES = 2  # 1: numbers of enemies, the boss or shards are not all zero
 
 ALL_BRICKS = -1
-_UNKNOWN = -(2**62)  # no world remembers all changes since then
+UNKNOWN = -(2**62)  # no world remembers all changes since then
 
 
 def nothing_shown(num_worlds: int) -> NDArray[np.int64]:
@@ -29,7 +29,7 @@ def nothing_shown(num_worlds: int) -> NDArray[np.int64]:
 
 def forget_shown(shown: NDArray[np.int64]) -> None:
     """Note that observations may show anything, so that all of their numbers are written anew."""
-    shown[:] = _UNKNOWN, 1, 1
+    shown[:] = UNKNOWN, 1, 1
 
 
 def check_within(observations: NDArray[Any], low: float, high: float) -> None:

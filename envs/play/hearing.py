@@ -9,8 +9,8 @@ from ..state import FLYING
 from .sound import Tone
 
 # A ball that turns upward so near above the paddle was hit by it: all bricks are higher.
-_PADDLE_REACH = PADDLE_TOP + 1.0
-_COUNTED = {
+PADDLE_REACH = PADDLE_TOP + 1.0
+COUNTED = {
     "lives_lost": Tone.LIFE_LOST,
     "rounds_cleared": Tone.CLEARED,
     "lives_gained": Tone.LIFE_WON,
@@ -27,11 +27,11 @@ def tones_of(before: Any, after: Any, outcome: Any) -> list[Tone]:
         before, after: `World` records.
         outcome: the tick's `Outcome`.
     """
-    tones = [tone for field, tone in _COUNTED.items() if outcome[field] > 0]
+    tones = [tone for field, tone in COUNTED.items() if outcome[field] > 0]
     flying = (before["ball_state"] == FLYING) & (after["ball_state"] == FLYING)
     turned_x = np.sign(before["ball_vx"]) != np.sign(after["ball_vx"])
     turned_y = np.sign(before["ball_vy"]) != np.sign(after["ball_vy"])
-    low = (after["ball_y"] < _PADDLE_REACH) & (after["ball_vy"] > 0.0)
+    low = (after["ball_y"] < PADDLE_REACH) & (after["ball_vy"] > 0.0)
     if (flying & turned_y & low).any():
         tones.append(Tone.PADDLE)
     elif not tones and (flying & (turned_x | turned_y)).any():

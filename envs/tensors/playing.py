@@ -39,7 +39,7 @@ def world_of(index: int, arrays: Any) -> Any:
 
 
 @inlined
-def _outcome_of(index: int, arrays: Any) -> Any:
+def outcome_of(index: int, arrays: Any) -> Any:
     """Return its outcome, `Outcome` [1]."""
     return array_at(arrays.outcomes + index * _OUTCOME_SIZE, (1,), Outcome)
 
@@ -51,7 +51,8 @@ def rules_of(arrays: Any) -> Any:
 
 
 @inlined
-def _levels_of(arrays: Any) -> Any:
+def levels_of(arrays: Any) -> Any:
+    """Return the levels that are played in turn, `LevelEntry` [n]."""
     return array_at(arrays.levels, (arrays.num_levels,), LevelEntry)
 
 
@@ -70,8 +71,8 @@ def play(index: int, arrays: Any) -> bool:
     step_worlds(
         worlds,
         rules_of(arrays),
-        _levels_of(arrays),
-        _outcome_of(index, arrays),
+        levels_of(arrays),
+        outcome_of(index, arrays),
         _commands(index, arrays),
         arrays.autoreset == _NEXT_STEP,
         arrays.episodic_life != 0,
@@ -99,7 +100,7 @@ def _commands(index: int, arrays: Any) -> Any:
 @kernel
 def report(index: int, arrays: Any) -> None:
     """Write the results of a world's step."""
-    count, outcomes = arrays.count, _outcome_of(index, arrays)
+    count, outcomes = arrays.count, outcome_of(index, arrays)
     world, outcome = world_of(index, arrays)[0], outcomes[0]
     array_at(arrays.rewards, (count,), FLOAT64)[index] = outcome.reward
     array_at(arrays.terminated, (count,), BOOL)[index] = outcome.terminated
@@ -118,14 +119,14 @@ def begin_again(index: int, address: int, arrays: Any) -> bool:
     """Begin a new episode in a world, in the step that has ended one; tell whether one has."""
     if array_at(arrays.moves, (arrays.count,), BYTE)[index] != ENDED:
         return False
-    outcomes = _outcome_of(index, arrays)
+    outcomes = outcome_of(index, arrays)
     _tabulate(index, outcomes, arrays.final_infos, arrays.count)
     outcome = outcomes[0]
     reward, terminated, truncated = outcome.reward, outcome.terminated, outcome.truncated
     reset_worlds(
         world_of(index, arrays),
         rules_of(arrays),
-        _levels_of(arrays),
+        levels_of(arrays),
         outcomes,
         array_at(address + HERE, (1,), BOOL),
     )

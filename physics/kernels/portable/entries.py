@@ -30,11 +30,14 @@ class Entry(NamedTuple):
         return Path(str(import_module(self.module).__file__))
 
 
-def compile_entries(entries: Sequence[Entry]) -> str:
+def compile_entries(entries: Sequence[Entry], optimised: bool = True) -> str:
     """Return LLVM's code for entries, in its text form, not yet for any machine.
 
     What the disk cache gave to this process can't be looked into, and code that is meant for this
     processor's vectors is of no use elsewhere. So a process of its own compiles afresh.
+
+    Args:
+        optimised: whether LLVM has optimised it, as for machines with pointers of 64 bits.
 
     Raises:
         RuntimeError: it has failed; the message is its own.
@@ -43,6 +46,7 @@ def compile_entries(entries: Sequence[Entry]) -> str:
         **os.environ,
         UNCACHED: "1",
         "NUMBA_DISABLE_JIT": "0",
+        "NUMBA_OPT": "3" if optimised else "0",
         "NUMBA_LOOP_VECTORIZE": "0",
         "NUMBA_SLP_VECTORIZE": "0",
         "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),

@@ -7,26 +7,20 @@ IEEE 754 says. A thread of the card runs an entry for one item.
 
 import re
 from collections.abc import Sequence
-from contextlib import suppress
-from pathlib import Path
 
-import llvmlite
 import llvmlite.binding as llvm
-import numba
 
-from ..cache import writable_folder
-from ..digest import digest
-from ..messages import say_compiling_for, say_unwritable
-from ..sealed import unseal, write_sealed
 from .entries import Entry, compile_entries
+from .kept import Product, make_once
+from .retarget import retarget
 
 # Every card since Ampere (2020) runs it.
 ARCHITECTURE = "sm_80"
 
-_MAKERS = ("ptx.py", "afresh.py")
+_PTX = Product(
+    "ptx", "graphics cards", b"ARKAPTX\0", 1, ("ptx.py", "afresh.py", "entries.py", "retarget.py")
+)
 _TRIPLE = "nvptx64-nvidia-cuda"
-_MARK = b"ARKAPTX\0"
-_VERSION = 1
 
 # A kernel of the card for each entry. Its threads may be more than there are items.
 _KERNEL = """
@@ -108,41 +102,17 @@ def make_ptx(entries: Sequence[Entry]) -> str:
 
     It is kept with the machine code of other kernels, for as long as no source changes.
 
+    Args:
+        entries: all of one file.
+
     Raises:
         RuntimeError: the entries could not be compiled.
     """
-    # Entries don't import what makes PTX of them.
-    makers = [digest(Path(__file__).with_name(name), "") for name in _MAKERS]
-    compiler = f"ptx {numba.__version__} {llvmlite.__version__} {makers} {entries!r}"
-    # All entries of one file: the digest covers what it imports.
-    (file,) = {entry.file for entry in entries}
-    folder = writable_folder(file, compiler)
-    kept = None if folder is None else folder / "entries.ptx"
-    ptx = None if kept is None else _load(kept)
-    if ptx is None:
-        say_compiling_for("graphics cards")
-        ptx = _assemble(compile_entries(entries), entries)
-        if kept is not None:
-            _save(kept, ptx)
-    return ptx
+    return make_once(_PTX, entries, lambda: _make(entries)).decode()
 
 
-def _load(kept: Path) -> str | None:
-    """Return the PTX of a file; None if it can't be read. A damaged file is deleted."""
-    with suppress(OSError):
-        try:
-            return bytes(unseal("file of PTX", _MARK, _VERSION, kept.read_bytes())).decode()
-        except ValueError:
-            kept.unlink()
-    return None
-
-
-def _save(kept: Path, ptx: str) -> None:
-    """Keep PTX in a file, or go on without."""
-    try:
-        write_sealed(kept, _MARK, _VERSION, ptx.encode())
-    except OSError as error:
-        say_unwritable(kept.parents[1], error)
+def _make(entries: Sequence[Entry]) -> bytes:
+    return _assemble(compile_entries(entries), entries).encode()
 
 
 def _assemble(code: str, entries: Sequence[Entry]) -> str:
@@ -153,7 +123,7 @@ def _assemble(code: str, entries: Sequence[Entry]) -> str:
     llvm.set_option("", "-nvptx-fma-level=0")
     machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu=ARCHITECTURE, opt=3)
     kernels = [_KERNEL.format(name=entry.name) for entry in entries]
-    text = _for_card(code, str(machine.target_data))
+    text = _COPY_OF_BYTES.sub(_copy_of_words, retarget(code, _TRIPLE, str(machine.target_data)))
     module = llvm.parse_assembly("".join((text, _COPY, _PLACES, *kernels)))
     for entry in entries:
         module.get_function(entry.name).linkage = "internal"
@@ -163,16 +133,6 @@ def _assemble(code: str, entries: Sequence[Entry]) -> str:
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     return str(machine.emit_assembly(module))
-
-
-def _for_card(code: str, layout: str) -> str:
-    """Return code with the card's layout of data, and without what is this processor's."""
-    code = re.sub(r"^target datalayout = .*$", f'target datalayout = "{layout}"', code, flags=re.M)
-    code = re.sub(r"^target triple = .*$", f'target triple = "{_TRIPLE}"', code, flags=re.M)
-    code = re.sub(r'"(target-cpu|target-features|tune-cpu|probe-stack)"="[^"]*"', "", code)
-    code = _COPY_OF_BYTES.sub(_copy_of_words, code)
-    # The card has no library of C, but square roots of its own.
-    return re.sub(r"\bcall ([^\n]*?)double @sqrt\(", r"call \1double @llvm.sqrt.f64(", code)
 
 
 def _copy_of_words(call: "re.Match[str]") -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from arkanoid.envs.tensors.entries import STEPS
 from arkanoid.physics.kernels import sealed
-from arkanoid.physics.kernels.portable import Entry, ptx
+from arkanoid.physics.kernels.portable import Entry, kept, ptx
 
 ENTRIES = [run.entry for run in STEPS["vector"]]
 MOST_STACK = 4096  # bytes of a thread: a card reserves as much for each that it could run at once
@@ -122,7 +122,7 @@ def test_where_nothing_can_be_written_it_is_made_again(
 def test_other_makers_make_it_again(quick: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
     """A kept file stayed when only the code that makes PTX had changed."""
     ptx.make_ptx(ENTRIES)
-    monkeypatch.setattr(ptx, "digest", lambda file, compiler: f"another {file.name}")
+    monkeypatch.setattr(kept, "digest", lambda file, compiler: f"another {file.name}")
     assert ptx.make_ptx(ENTRIES) == "text 2"
 
 

@@ -1,0 +1,206 @@
+// The page: it opens the game, shows one of its parts, and passes keys, pointer and time on.
+
+import { loadArkanoid } from "arkanoid/game";
+import { Clock } from "arkanoid/clock";
+import { FIELD_KEYS, KEYS } from "arkanoid/controls";
+import { bytesOf, jsonOf } from "arkanoid/data";
+import { Editor } from "arkanoid/editor";
+import { Play } from "arkanoid/play";
+import { Scores } from "arkanoid/scores";
+import { Speaker } from "arkanoid/sound";
+import { Stage } from "arkanoid/stage";
+import { Viewer } from "arkanoid/viewer";
+import { Watch } from "arkanoid/watch";
+
+/** What the page consists of, by the addresses of its parts: #play. */
+const PARTS = { play: Play, watch: Watch, replay: Viewer, editor: Editor };
+
+class App {
+  constructor(arkanoid, facts) {
+    this.arkanoid = arkanoid;
+    this.facts = facts;
+    this.stage = new Stage(arkanoid.manifest.view);
+    this.speaker = new Speaker(facts.hearing);
+    this.scores = new Scores();
+    this.clock = new Clock();
+    this._parts = {};
+    this._button = (id) => document.getElementById(id);
+  }
+
+  /** @returns {HTMLElement} the panel of a part */
+  panel(name) {
+    return document.getElementById(`panel-${name}`);
+  }
+
+  /** @returns {object | undefined} the replay of the game that was played last */
+  played() {
+    return this._parts.play?.recorded;
+  }
+
+  /** Play a level of the editor. */
+  async playLevel(level) {
+    await this._go("play");
+    this.part.offer(level);
+    this.stage.focus();
+  }
+
+  /** Tell those who can't see. */
+  say(text) {
+    document.getElementById("said").textContent = text;
+  }
+
+  /** Show a part of the page. */
+  async show(name) {
+    this.part?.leave();
+    for (const panel of document.querySelectorAll(".panel")) {
+      panel.hidden = panel.id !== `panel-${name}`;
+    }
+    for (const link of document.querySelectorAll("nav a")) {
+      if (link.hash === `#${name}`) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+    }
+    const part = (this._parts[name] ??= new PARTS[name](this));
+    this.part = part;
+    await part.enter();
+    this.stage.sheet();
+    document.querySelector(".bar").hidden = Boolean(part.still);
+    this.stage.offerStrip(part.steers !== null);
+    this.stage.stale = true;
+  }
+
+  /** React to a key that has a meaning. */
+  press(key) {
+    if (key === "faster" || key === "slower") this.clock.change(key === "faster" ? 1 : -1);
+    else if (key === "full") this.stage.fillScreen();
+    else if (key === "sound") this._switchSound();
+    else this.part?.press(key);
+  }
+
+  /** Listen to everything, and begin to show pictures. */
+  run() {
+    this._listen();
+    const picture = (now) => {
+      this._picture(now);
+      requestAnimationFrame(picture);
+    };
+    requestAnimationFrame(picture);
+  }
+
+  _picture(now) {
+    const { part, stage, clock } = this;
+    if (!part?.game) return;
+    const rate = this.arkanoid.manifest.rules.TICKS_PER_SECOND / part.game.config.frame_skip;
+    clock.run(now, rate, () => {
+      const more = part.tick();
+      stage.stale = true;
+      return more;
+    });
+    if (stage.stale) {
+      stage.paint(part.game);
+      part.painted?.();
+      const { score, lives, round_number: round } = part.game.world;
+      this._label(`The field: round ${round}, ${lives} lives, score ${score}`);
+    }
+    stage.say(part.notice());
+    stage.hide(part.runs && part.steers);
+    for (const id of ["pause", "once"]) this._button(id).disabled = part.deed === null;
+    write(this._button("pause").firstElementChild, part.deed ?? "Pause");
+    write(this._button("speed"), clock.text);
+  }
+
+  _label(text) {
+    if (text !== this._labelled) this.stage.canvas.setAttribute("aria-label", text);
+    this._labelled = text;
+  }
+
+  _switchSound() {
+    this.speaker.switch();
+    this._button("sound").setAttribute("aria-pressed", String(this.speaker.on));
+  }
+
+  _listen() {
+    addEventListener("hashchange", async () => {
+      await this.show(partOf(location.hash));
+      this.stage.focus();
+    });
+    addEventListener("keydown", (event) => {
+      const key = this._meaning(event);
+      if (!key) return;
+      event.preventDefault();
+      if (!event.repeat || this.part?.keys) this.press(key);
+    });
+    addEventListener("keyup", (event) => this.part?.release(meaningOf(event)));
+    for (const id of ["pause", "once", "slower", "faster", "sound", "full"]) {
+      this._button(id).onclick = (event) => {
+        this.press(id);
+        // Who uses the mouse goes on to play with keys.
+        if (event.detail > 0) this.stage.focus();
+      };
+    }
+    addEventListener("blur", () => this.part?.leave());
+    document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener("drop", (event) => this._drop(event));
+    this.stage.listen({
+      press: (key) => this.part?.press(key),
+      release: (key) => this.part?.release(key),
+      point: (...where) => this.part?.point(...where),
+    });
+  }
+
+  /** Show a file that is dropped anywhere on the page. */
+  async _drop(event) {
+    event.preventDefault();
+    const [file] = event.dataTransfer.files;
+    if (!file) return;
+    await this._go(file.name.endsWith(".txt") ? "editor" : "replay");
+    await this.part.dropped(file);
+  }
+
+  /** Go to a part of the page. */
+  async _go(name) {
+    if (this.part === this._parts[name]) return;
+    history.pushState(null, "", `#${name}`);
+    await this.show(name);
+  }
+
+  /** @returns {string | undefined} what a key means where the focus is */
+  _meaning(event) {
+    const { target } = event;
+    if (event.altKey || target.closest("input:not([type=checkbox]), select, textarea")) return undefined;
+    if (event.key === " " && target.closest("input")) return undefined;
+    const own = this.part?.keys;
+    if (own && Object.hasOwn(own, wordOf(event))) return own[wordOf(event)];
+    if (event.ctrlKey || event.metaKey) return undefined;
+    if (event.key === " " && target.closest("button, a, summary")) return undefined;
+    const onField = target === this.stage.canvas;
+    return meaningOf(event) ?? (onField ? FIELD_KEYS[event.key] : undefined);
+  }
+}
+
+function meaningOf({ key }) {
+  return KEYS[key.length === 1 ? key.toLowerCase() : key];
+}
+
+/** @returns {string} a key with those that are held: Ctrl+z */
+function wordOf({ key, ctrlKey, metaKey, shiftKey }) {
+  const plain = key.length === 1 ? key.toLowerCase() : key;
+  if (!(ctrlKey || metaKey)) return plain;
+  return `Ctrl+${shiftKey ? "Shift+" : ""}${plain}`;
+}
+
+function partOf(hash) {
+  const name = hash.slice(1);
+  return Object.hasOwn(PARTS, name) ? name : Object.keys(PARTS)[0];
+}
+
+function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+const [code, manifest, facts] = await Promise.all([bytesOf("code"), jsonOf("manifest"), jsonOf("facts")]);
+const app = new App(await loadArkanoid(code, manifest), facts);
+await app.show(partOf(location.hash));
+app.run();
+/** For tests, and for whoever is curious. */
+globalThis.arkanoid = app;

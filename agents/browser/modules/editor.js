@@ -1,0 +1,356 @@
+// The editor: a level is painted brick by brick; the kernels draw it, and say if it can be cleared.
+
+import { download, make } from "arkanoid/data";
+import { randomSeed } from "arkanoid/levels";
+import { levelText, parseLevel } from "arkanoid/levelfile";
+import { Trials } from "arkanoid/trials";
+
+const PLACE = "arkanoid.level";
+const TRIES = 20;
+const MOST_UNDONE = 500;
+const KEYS = {
+  ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down", " ": "paint",
+  "Ctrl+z": "undo", "Ctrl+y": "redo", "Ctrl+Shift+z": "redo",
+};
+const WAYS = { left: [0, -1], right: [0, 1], up: [-1, 0], down: [1, 0] };
+
+export class Editor {
+  /** @param {object} app what all pages share, see `app.js` */
+  constructor(app) {
+    this.app = app;
+    this.phase = "editing";
+    const { manifest } = app.arkanoid;
+    this._rules = manifest.rules;
+    this.keys = { ...KEYS };
+    for (const letter of this._rules.BRICK_LETTERS) this.keys[letter.toLowerCase()] = `brush ${letter}`;
+    this._find = (id) => document.getElementById(id);
+    this._undone = [];
+    this._done = [];
+    this._cell = null; // under the mouse or the cursor
+    this._brush = "r";
+    for (const button of app.panel("editor").querySelectorAll("[data-edit]")) {
+      button.onclick = () => this[button.dataset.edit]();
+    }
+    this._find("boss").onchange = () => this._show();
+    const [agent] = app.facts.agents;
+    this._trials = new Trials(app.arkanoid, agent);
+    this._find("who").textContent = agent.name;
+    this._fillPalette(app.facts.bricks);
+    this._fillRecipe(manifest.generator);
+    const file = this._find("level-file");
+    file.onchange = () => file.files[0] && this.dropped(file.files[0]);
+  }
+
+  get runs() {
+    return false;
+  }
+
+  /** Nobody steers a paddle here. */
+  get steers() {
+    return null;
+  }
+
+  get deed() {
+    return null;
+  }
+
+  async enter() {
+    if (this.game) return;
+    this._board = await this.app.arkanoid.board();
+    const game = await this.app.arkanoid.open("full by hand");
+    this._level = this._remembered() ?? parseLevel("", this._rules);
+    game.reset({ seed: 0 });
+    this.game = game;
+    if (/^\.*$/.test(this._level.bricks)) this._level.bricks = this._board.generate(1, 0.5);
+    this._take(this._level);
+  }
+
+  leave() {
+    this._stroking = false;
+    this._trials.stop();
+    this._find("tries").hidden = true;
+  }
+
+  /** Whether nothing moves. */
+  get still() {
+    return true;
+  }
+
+  press(key) {
+    if (key in WAYS) this._move(...WAYS[key]);
+    else if (key.startsWith("brush ")) this._choose(key.at(-1));
+    else if (key === "undo" || key === "redo") this[key]();
+    else if (key === "paint") this._stroke(() => this._paint(this._cell));
+  }
+
+  release(key) {
+    if (key === "fire") this._stroking = false;
+  }
+
+  /** Follow the pointer, and paint while it is held. */
+  point(x, y, held) {
+    const { LATTICE_TOP, BRICK_HEIGHT, COLUMNS, ROWS } = this._rules;
+    const [row, column] = [Math.floor((LATTICE_TOP - y) / BRICK_HEIGHT), Math.floor(x)];
+    const inside = row >= 0 && row < ROWS && column >= 0 && column < COLUMNS;
+    this._cell = inside ? row * COLUMNS + column : null;
+    this.app.stage.stale = true;
+    if (!held) this._stroking = false;
+    else if (this._cell !== null) {
+      if (this._stroking) this._paint(this._cell);
+      else this._stroke(() => this._paint(this._cell));
+      this._stroking = true;
+    }
+  }
+
+  tick() {
+    return false;
+  }
+
+  notice() {
+    return {};
+  }
+
+  painted() {
+    const pen = this.app.stage.sheet();
+    for (const cell of this._barred) this._cross(pen, cell);
+    if (this._cell !== null) this._frame(pen, this._cell);
+  }
+
+  undo() {
+    this._swap(this._done, this._undone);
+  }
+
+  redo() {
+    this._swap(this._undone, this._done);
+  }
+
+  clear() {
+    this._stroke(() => this._set(".".repeat(this._rules.CELLS)));
+  }
+
+  play() {
+    const { bricks, boss } = this._level;
+    this.app.playLevel({ bricks, boss });
+  }
+
+  /** Let the agent play this level. */
+  async attempt() {
+    const { bricks, boss } = this._level;
+    const shown = this._find("tries");
+    shown.hidden = false;
+    shown.textContent = "Trying …";
+    await this._trials.run({ bricks, boss }, TRIES, ({ played, cleared, ticks }) => {
+      const seconds = Math.round(ticks / cleared / this._rules.TICKS_PER_SECOND);
+      const took = cleared ? `, in ${seconds} s on average` : "";
+      shown.textContent = `Cleared ${cleared} of ${played}${took}.`;
+    });
+  }
+
+  another() {
+    this._find("number").value = randomSeed() % 10_000;
+    this._generate();
+  }
+
+  save() {
+    const text = levelText(this._level, this._rules);
+    const name = this._level.name.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "_") || "level";
+    download(text, `${name}.txt`);
+  }
+
+  open() {
+    this._find("level-file").click();
+  }
+
+  /** Take a level file. */
+  async dropped(file) {
+    const fault = this._find("level-fault");
+    try {
+      const level = parseLevel(await file.text(), this._rules);
+      this._stroke(() => this._take(level));
+      fault.textContent = "";
+    } catch (error) {
+      fault.textContent = error.message;
+      fault.closest("details").open = true;
+    }
+  }
+
+  _take(level) {
+    this._level = { ...level };
+    this._find("level-name").value = level.name;
+    this._find("boss").checked = level.boss;
+    this._show();
+  }
+
+  /** Do something that can be undone. */
+  _stroke(change) {
+    const { bricks } = this._level;
+    change();
+    if (this._level.bricks === bricks) return;
+    this._done.push(bricks);
+    if (this._done.length > MOST_UNDONE) this._done.shift();
+    this._undone = [];
+    this._show();
+  }
+
+  _swap(from, to) {
+    if (!from.length) return;
+    to.push(this._level.bricks);
+    this._set(from.pop());
+  }
+
+  _paint(cell) {
+    if (cell === null) return;
+    const letters = Array.from(this._level.bricks);
+    letters[cell] = this._brush;
+    if (this._find("mirrored").checked) {
+      const { COLUMNS } = this._rules;
+      const column = cell % COLUMNS;
+      letters[cell - column + COLUMNS - 1 - column] = this._brush;
+    }
+    this._set(letters.join(""));
+  }
+
+  _set(bricks) {
+    if (bricks === this._level.bricks) return;
+    this._level.bricks = bricks;
+    this._show();
+  }
+
+  /** Move the cursor. */
+  _move(down, right) {
+    const { COLUMNS, ROWS } = this._rules;
+    const cell = this._cell ?? Math.floor(COLUMNS / 2) - right - down * COLUMNS;
+    const row = (Math.floor(cell / COLUMNS) + down + ROWS) % ROWS;
+    const column = ((cell % COLUMNS) + right + COLUMNS) % COLUMNS;
+    this._cell = row * COLUMNS + column;
+    const name = this.app.facts.bricks.find(({ letter }) => letter === this._level.bricks[this._cell]);
+    this.app.say(`Row ${row + 1}, column ${column + 1}: ${name?.name ?? "empty"}`);
+    this.app.stage.stale = true;
+  }
+
+  _choose(letter) {
+    this._brush = letter;
+    this._find("palette").querySelector(`[value="${letter}"]`).checked = true;
+  }
+
+  /** Show the level as it is, and whether it can be cleared. */
+  _show() {
+    this._level.boss = this._find("boss").checked;
+    const { bricks, boss } = this._level;
+    this.game.reset({ seed: 0, bricks, boss });
+    this._board.bricks = bricks;
+    const { breakable, unreachable } = this._board.search();
+    this._barred = unreachable;
+    const good = !unreachable.length && (breakable > 0 || boss);
+    const verdict = this._find("clearable");
+    verdict.className = good ? "verdict good" : "verdict bad";
+    verdict.textContent = verdictOf(breakable, unreachable.length, boss);
+    const panel = this.app.panel("editor");
+    panel.querySelector("[data-edit=play]").disabled = !good;
+    panel.querySelector("[data-edit=attempt]").disabled = !good || (boss && !this._trials.knowsBoss);
+    panel.querySelector("[data-edit=undo]").disabled = !this._done.length;
+    panel.querySelector("[data-edit=redo]").disabled = !this._undone.length;
+    this._trials.stop();
+    this._find("tries").hidden = true;
+    this._remember();
+    this.app.stage.stale = true;
+  }
+
+  _frame(pen, cell) {
+    const [x, y, width, height] = this._area(cell);
+    pen.lineWidth = 0.07;
+    pen.strokeStyle = "#fff";
+    pen.strokeRect(x, y, width, height);
+  }
+
+  _cross(pen, cell) {
+    const [x, y, width, height] = this._area(cell);
+    pen.lineCap = "round";
+    for (const [colour, thick] of [["#000", 0.17], ["#ff5c5c", 0.09]]) {
+      pen.strokeStyle = colour;
+      pen.lineWidth = thick;
+      pen.beginPath();
+      pen.moveTo(x + 0.2, y + 0.12);
+      pen.lineTo(x + width - 0.2, y + height - 0.12);
+      pen.moveTo(x + width - 0.2, y + 0.12);
+      pen.lineTo(x + 0.2, y + height - 0.12);
+      pen.stroke();
+    }
+  }
+
+  /** @returns {number[]} left, top, width and height of a cell in the picture, in brick widths */
+  _area(cell) {
+    const { view } = this.app.arkanoid.manifest;
+    const { BRICK_HEIGHT, BRICK_WIDTH, COLUMNS, LATTICE_TOP } = this._rules;
+    const top = view.height - LATTICE_TOP + Math.floor(cell / COLUMNS) * BRICK_HEIGHT;
+    return [view.wall + (cell % COLUMNS) * BRICK_WIDTH, top, BRICK_WIDTH, BRICK_HEIGHT];
+  }
+
+  _generate() {
+    const recipe = {};
+    for (const id of ["motif", "symmetry"]) {
+      if (this._find(id).value) recipe[id] = this._find(id).value;
+    }
+    const seed = Math.max(0, Math.trunc(Number(this._find("number").value)) || 0);
+    const bricks = this._board.generate(seed, Number(this._find("hardness").value), recipe);
+    this._stroke(() => this._set(bricks));
+  }
+
+  _fillPalette(bricks) {
+    const empty = { letter: ".", name: "empty" };
+    const choices = [...bricks, empty].map(({ letter, name, picture, width }) => {
+      const input = make("input", { type: "radio", name: "brush", value: letter, checked: letter === this._brush });
+      input.setAttribute("aria-label", name);
+      input.onchange = () => (this._brush = letter);
+      const image = picture
+        ? make("img", { src: `data:image/png;base64,${picture}`, alt: "", width })
+        : make("span", { className: "eraser" });
+      return make("label", { title: `${name} ( ${letter} )` }, input, image);
+    });
+    this._find("palette").append(...choices);
+  }
+
+  _fillRecipe({ motifs, symmetries }) {
+    for (const [id, words] of [["motif", motifs], ["symmetry", symmetries]]) {
+      const any = make("option", { value: "" }, "Any");
+      const options = words.map((word) => make("option", { value: word }, word.replaceAll("_", " ")));
+      this._find(id).append(any, ...options);
+    }
+    this._find("hardness").oninput = () => (this._find("hard").value = this._find("hardness").value);
+    this._find("recipe").onsubmit = (event) => {
+      event.preventDefault();
+      this._generate();
+    };
+    this._find("level-name").oninput = () => {
+      this._level.name = this._find("level-name").value;
+      this._remember();
+    };
+  }
+
+  _remember() {
+    try {
+      localStorage.setItem(PLACE, levelText(this._level, this._rules));
+    } catch {
+      // It is full, or forbidden.
+    }
+  }
+
+  _remembered() {
+    try {
+      const text = localStorage.getItem(PLACE);
+      return text ? parseLevel(text, this._rules) : null;
+    } catch {
+      return null;
+    }
+  }
+}
+
+function verdictOf(breakable, barred, boss) {
+  if (barred) {
+    const [count, verb] = barred === 1 ? ["1 brick", "is"] : [`${barred} bricks`, "are"];
+    return `Nobody can clear it: ${count} behind gold ${verb} out of reach, crossed out.`;
+  }
+  if (!breakable && !boss) return "There is nothing to break yet.";
+  const bricks = breakable === 1 ? "1 brick" : `${breakable} bricks`;
+  return `It can be cleared: ${bricks}${boss ? " and the boss" : ""}, and all can be reached.`;
+}

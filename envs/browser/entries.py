@@ -1,0 +1,121 @@
+"""The entries that a browser calls: each does one thing with the record at its address.
+
+They call the very kernels that play, observe and draw on the processor. So the bits are the same.
+The index has no meaning: a record is of one game, picture, board, block or network.
+"""
+
+from ...physics.kernels import kernel
+from ...physics.kernels.borrowed import BYTE
+from ...physics.kernels.portable import Entry, array_at
+from ..tensors.observing import observe_grid, observe_vector
+from ..tensors.playing import play
+from .boards import lay_board, plan_board, search_board
+from .checksums import checksum_of
+from .network import think
+from .pictures import begin_picture, draw_picture, measure_picture
+from .playing import begin_game, forget_game, note_game, seed_game, steer_game
+from .records import Block, Board, Game, Network, Picture
+
+
+@kernel
+def seed(index: int, address: int) -> None:
+    """Seed a game's random numbers."""
+    seed_game(array_at(address, (1,), Game)[0])
+
+
+@kernel
+def reset(index: int, address: int) -> None:
+    """Begin a game, or its next life."""
+    begin_game(address, array_at(address, (1,), Game)[0])
+
+
+@kernel
+def step(index: int, address: int) -> None:
+    """Play a decision with the action that the game's arrays hold."""
+    play(0, array_at(address, (1,), Game)[0].arrays)
+
+
+@kernel
+def steer(index: int, address: int) -> None:
+    """Play a decision with the game's velocity and fire."""
+    steer_game(address, array_at(address, (1,), Game)[0])
+
+
+@kernel
+def forget(index: int, address: int) -> None:
+    """Note that a game's state was changed from outside."""
+    forget_game(array_at(address, (1,), Game)[0])
+
+
+@kernel
+def note(index: int, address: int) -> None:
+    """Take a game's state into its checksum."""
+    note_game(array_at(address, (1,), Game)[0])
+
+
+@kernel
+def vector(index: int, address: int) -> None:
+    """Observe a game as a vector."""
+    observe_vector(0, address, array_at(address, (1,), Game)[0].arrays)
+
+
+@kernel
+def grid(index: int, address: int) -> None:
+    """Observe a game as a grid."""
+    observe_grid(0, address, array_at(address, (1,), Game)[0].arrays)
+
+
+@kernel
+def measure(index: int, address: int) -> None:
+    """Find out how much memory a picture takes."""
+    measure_picture(array_at(address, (1,), Picture)[0])
+
+
+@kernel
+def begin(index: int, address: int) -> None:
+    """Draw what does not change in a picture."""
+    begin_picture(address, array_at(address, (1,), Picture)[0])
+
+
+@kernel
+def draw(index: int, address: int) -> None:
+    """Draw a picture."""
+    draw_picture(address, array_at(address, (1,), Picture)[0])
+
+
+@kernel
+def plan(index: int, address: int) -> None:
+    """Find a board's recipe."""
+    plan_board(array_at(address, (1,), Board)[0])
+
+
+@kernel
+def lay(index: int, address: int) -> None:
+    """Lay the level of a board's recipe."""
+    lay_board(address, array_at(address, (1,), Board)[0])
+
+
+@kernel
+def search(index: int, address: int) -> None:
+    """Search a board for bricks that no ball can reach."""
+    search_board(array_at(address, (1,), Board)[0])
+
+
+@kernel
+def add(index: int, address: int) -> None:
+    """Take a block's bytes into its checksum."""
+    block = array_at(address, (1,), Block)[0]
+    block.checksum = checksum_of(array_at(block.address, (block.length,), BYTE), block.checksum)
+
+
+@kernel
+def judge(index: int, address: int) -> None:
+    """Let a network judge what it observes."""
+    think(array_at(address, (1,), Network)[0])
+
+
+_NAMES = (
+    *("seed", "reset", "step", "steer", "forget", "note", "vector", "grid"),
+    *("measure", "begin", "draw", "plan", "lay", "search", "add", "judge"),
+)
+ENTRIES = tuple(Entry(__name__, name) for name in _NAMES)

@@ -1,0 +1,133 @@
+"""Watching agents in a real browser, and the command that serves the page."""
+
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.error import HTTPError
+from urllib.request import urlopen
+
+import pytest
+from arkanoid.agents.cli import main
+from helpers.browser import DESKTOP, visit, wait_until
+from helpers.processes import ARKANOID
+from helpers.runs import packaged_copy
+
+# A whole game, decision by decision and tick by tick: what it looks like in the end.
+BOTH_WAYS = """async (name) => {
+  const { part } = arkanoid;
+  const seen = ({ world }) => [world.score, world.round_number, world.lives, world.paddle_x,
+    ...world.ball_x, ...world.ball_y, ...world.brick_hits];
+  part.phase = "paused";
+  const { Agent } = await import("arkanoid/network");
+  const { bytesOf } = await import("arkanoid/data");
+  const agent = new Agent(await arkanoid.arkanoid.open(name), await bytesOf(`agent-${name}`));
+  part.game.reset({ seed: 3 });
+  agent.game.reset({ seed: 3 });
+  part._judgement = null;
+  part.phase = "playing";
+  let decisions = 0;
+  for (; decisions < 1500 && !agent.game.over; decisions += 1) {
+    agent.game.step(agent.judge().action);
+    for (let tick = 0; tick < agent.config.frame_skip && !part.game.over; tick += 1) part.tick();
+  }
+  return [decisions, seen(agent.game), seen(part.game)];
+}"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("page")
+
+
+@pytest.fixture(scope="module")
+def address(folder: Path) -> Iterator[str]:
+    """The page as the command serves it."""
+    process = subprocess.Popen(
+        [*ARKANOID, "web", "--no-open"], stdout=subprocess.PIPE, text=True, cwd=folder
+    )
+    assert process.stdout is not None
+    yield process.stdout.readline().split()[0]
+    process.send_signal(signal.SIGTERM if os.name == "nt" else signal.SIGINT)
+    process.communicate(timeout=60)
+
+
+@pytest.fixture
+def page(browser: Any, address: str) -> Iterator[Any]:
+    with visit(browser, f"{address}#watch", **DESKTOP) as page:
+        yield page
+
+
+def test_only_the_page_is_served(address: str) -> None:
+    with urlopen(address) as answer:
+        assert answer.read().startswith(b"<!doctype html>")
+    with pytest.raises(HTTPError, match="404"):
+        urlopen(f"{address}etc/passwd")
+
+
+@pytest.mark.parametrize("name", ["full", "lite"])
+def test_an_agent_plays_tick_by_tick_as_it_was_trained(page: Any, name: str) -> None:
+    page.get_by_label(name, exact=True).check()
+    wait_until(page, f"part.game?.name === '{name} at play'")
+    wait_until(page, "part.phase === 'playing'")
+    decisions, trained, shown = page.evaluate(BOTH_WAYS, name)
+    assert decisions > 100
+    assert trained == shown
+
+
+def test_what_an_agent_thinks_and_sees(page: Any) -> None:
+    wait_until(page, "world.decisions > 60")
+    page.keyboard.press("p")
+    shares = page.locator("#chances b").all_text_contents()
+    assert len(shares) == 6
+    assert 97 <= sum(int(share.removesuffix(" %")) for share in shares) <= 103
+    assert float(page.locator("#value").text_content()) != 0.0
+    page.get_by_text("What it sees").click()
+    parts = "document.querySelectorAll('.seen div').length"
+    wait_until(page, f"{parts} === Object.keys(game.parts.vector).length")
+    page.get_by_text("The same as planes").click()
+    planes = "document.querySelectorAll('.planes figure').length"
+    wait_until(page, f"{planes} === game.shapes.grid[0]")
+
+
+def test_the_paddle_is_taken_and_handed_back(page: Any) -> None:
+    button = page.locator("[data-do=hand]")
+    wait_until(page, "world.decisions > 0")
+    page.keyboard.down("ArrowLeft")
+    assert button.text_content() == "Hand back"
+    wait_until(page, "world.paddle_vx < 0")
+    page.keyboard.up("ArrowLeft")
+    page.keyboard.press("t")
+    assert button.text_content() == "Take over"
+    picture = page.locator("#picture").bounding_box()
+    page.mouse.click(picture["x"] + 20, picture["y"] + 300)
+    assert button.text_content() == "Hand back"
+    button.click()
+    assert button.text_content() == "Take over"
+
+
+def test_reduced_motion_waits_for_its_user(browser: Any, address: str) -> None:
+    with visit(browser, f"{address}#watch", **DESKTOP, reduced_motion="reduce") as page:
+        assert page.evaluate("[arkanoid.part.phase, arkanoid.part.game.world.decisions]") == [
+            "paused",
+            0,
+        ]
+
+
+def test_ones_own_agent(browser: Any, folder: Path) -> None:
+    """It has the settings and the name of its run, and is shown first."""
+    run = packaged_copy(folder / "mine")
+    config = run.path / "config.toml"
+    text = config.read_text(encoding="utf-8")
+    config.write_text(text.replace('name = "lite"', 'name = "mine"'), encoding="utf-8")
+    shutil.rmtree(folder / "out", ignore_errors=True)
+    file = folder / "own.html"
+    assert main(["web", "--model", str(run.path), "--out", str(file)]) == 0
+    with visit(browser, f"{file.as_uri()}#watch", **DESKTOP) as page:
+        wait_until(page, "world.decisions > 8")
+        assert page.evaluate("arkanoid.part._agent.name") == "mine"
+        names = page.locator("#panel-watch .choice label").all_text_contents()
+        assert names == ["mine", "full", "lite"]
