@@ -77,18 +77,13 @@ def inverse_mass(name: str, value: Any) -> float:
 
 
 def vector(name: str, value: Any) -> Vector:
-    """Return two finite numbers as a tuple of floats."""
+    """Return two numbers, of which the engine may take the squares, as a tuple of floats."""
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         raise TypeError(f"{name} must be two numbers (x, y), but is {value!r}")
     components = list(value)
     if len(components) != 2:
         raise ValueError(f"{name} must be two numbers (x, y), but has {len(components)}: {value!r}")
-    return finite(f"{name}[0]", components[0]), finite(f"{name}[1]", components[1])
-
-
-def near(name: str, value: Any) -> Vector:
-    """Return two numbers, of which the engine may take the squares, as a tuple of floats."""
-    x, y = vector(name, value)
+    x, y = finite(f"{name}[0]", components[0]), finite(f"{name}[1]", components[1])
     if max(abs(x), abs(y)) > FARTHEST:
         raise ValueError(f"{name} must be at most {FARTHEST:g} away from 0, but is {value!r}")
     return x, y

@@ -19,7 +19,7 @@ group's speed, and weights of the largest one, so that no square overflows or va
 import math
 
 from ...kernels import kernel
-from ...tolerances import NO_BEND, STEPS, STEPS_PER_TOUCH, SWEEPS
+from ...tolerances import NO_BEND, RESOLVED, STEPS, STEPS_PER_TOUCH, SWEEPS
 from ..records import TouchRecord
 from ..view import WorldView, members_of, progress_of, touches_of
 
@@ -36,10 +36,7 @@ def resolve(world: WorldView, tolerance: float) -> bool:
         tolerance: what a touch may lack, a fraction of the group's speed.
     """
     touches = progress_of(world).touches
-    if touches == 1 and touches_of(world)[0].change == 0.0:
-        touch = touches_of(world)[0]
-        # As `bounce_velocities` does it, to the bit.
-        _change(world, touch, (touch.restitution + 1.0) * _along(world, touch, 0.0))
+    if _bounce_each(world):
         return True
     speed = group_speed(world)
     if speed == 0.0:
@@ -76,6 +73,33 @@ def resolve(world: WorldView, tolerance: float) -> bool:
             _set_course(world, True)
             _project(world, longest * speed)
     return False
+
+
+@kernel
+def _bounce_each(world: WorldView) -> bool:
+    """Let each touch that lacks something bounce as if it were alone; return whether that is all.
+
+    It is if the touches are in different directions, or of different bodies: then they bounce as
+    `bounce_velocities` says, to the bit. If not, or if some have an impulse, nothing changes.
+    """
+    touches = progress_of(world).touches
+    for index in range(touches):
+        if touches_of(world)[index].change != 0.0:
+            return False
+    for index in range(touches):
+        touch = touches_of(world)[index]
+        if touches == 1 or lacking(world, touch) > 0.0:
+            _change(world, touch, (touch.restitution + 1.0) * _along(world, touch, 0.0))
+    if touches == 1:
+        return True
+    least = RESOLVED * group_speed(world)
+    for index in range(touches):
+        touch = touches_of(world)[index]
+        more = lacking(world, touch)
+        if more > least or (touch.change != 0.0 and more < -least) or touch.change < 0.0:
+            _begin_again(world)
+            return False
+    return True
 
 
 @kernel
@@ -273,15 +297,21 @@ def _project(world: WorldView, step: float) -> None:
 @kernel
 def _settle(world: WorldView) -> None:
     """Begin again, and let each touch in turn have what it lacks, a few times."""
+    _begin_again(world)
+    for _ in range(SWEEPS):
+        for index in range(progress_of(world).touches):
+            touch = touches_of(world)[index]
+            _change(world, touch, max(lacking(world, touch), -touch.change))
+
+
+@kernel
+def _begin_again(world: WorldView) -> None:
+    """Give all members their old velocities, and no touch an impulse."""
     for index in range(progress_of(world).members):
         member = members_of(world)[index]
         member.vx, member.vy = member.old_vx, member.old_vy
     for index in range(progress_of(world).touches):
         touches_of(world)[index].change = 0.0
-    for _ in range(SWEEPS):
-        for index in range(progress_of(world).touches):
-            touch = touches_of(world)[index]
-            _change(world, touch, max(lacking(world, touch), -touch.change))
 
 
 @kernel

@@ -170,3 +170,17 @@ def test_what_meets_at_once_is_the_same_whoever_planned_it(
     assert len(expected) > 30
     assert np.concatenate(hits).tobytes() == expected.tobytes()
     assert np.concatenate(again).tobytes() == expected.tobytes()
+
+
+def test_a_ball_in_a_corner_bounces_off_each_wall_to_the_bit() -> None:
+    """The two hits at one time were one system, whose solution rounded 1000/3 in its last digit."""
+    velocity = np.array([1000.0 / 3.0, 200.0])
+    for corner in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        walls = [
+            Body(HalfPlane((-corner[0], 0)), (corner[0] * 2, 0)),
+            Body(HalfPlane((0, -corner[1])), (0, corner[1] * 2)),
+        ]
+        place = np.multiply(corner, 1.5 - velocity)
+        world = World([*walls, Body(Particle(0.5), place, corner * velocity, mass=1)])
+        assert len(world.step(2.0)) == 2
+        assert world.velocities[-1].tolist() == (-(corner * velocity)).tolist()
