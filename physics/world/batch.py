@@ -81,8 +81,8 @@ class WorldBatch:
             `Hit` records, by world (field ``world``) and time, as `World.step` returns them.
 
         Raises:
-            ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
-                large for a number.
+            ValueError: ``dt`` is negative or not finite, or a position or velocity is beyond 1e140,
+                or has become so.
             RuntimeError: the batch has several threads and is closed, or another call is in
                 progress.
         """

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ..arguments import not_negative, whole
 from ..kernels.layouts import record_dtype
 from ..kernels.sealed import seal, unseal
+from ..tolerances import FARTHEST
 from .lookup.inside import inside_blocks, pairs_inside
 from .records import END, Clock, Header, Hit, Motion, Plan
 from .setup import ByteArray, Setup
@@ -74,14 +75,14 @@ class Stepper:
         """Step all worlds; return their hits, sorted by world and time.
 
         Raises:
-            ValueError: if a position or velocity is not finite, or has become so.
+            ValueError: if a position or velocity is too large, or has become so.
         """
         count = step_worlds(self._call, 0, dt, steps)
         while count < 0:
             if count == INVALID:
                 raise ValueError(
-                    "a position or velocity is not finite: it was set so, or has become too large "
-                    "for a number; or the time has"
+                    f"a position or velocity is not finite, or beyond {FARTHEST:g}: it was set so, "
+                    "or has become too large; or the time has"
                 )
             self._make_room()
             count = step_worlds(self._call, -1 - count, dt, steps)
@@ -208,10 +209,10 @@ def _check_clocks(clocks: npt.NDArray[Any]) -> None:
 
 
 def _check_motions(kept: npt.NDArray[Any], clocks: npt.NDArray[Any]) -> None:
-    """Raise a ValueError unless motions are finite, and began before now."""
+    """Raise a ValueError unless motions are not too large, and began before now."""
     for part in ("shown", "after_step", "motion"):
         for name in ("x", "y", "vx", "vy"):
-            if not np.isfinite(kept[part][name]).all():
+            if not (np.abs(kept[part][name]) <= FARTHEST).all():
                 raise _corrupt("motions")
     if not ((kept["speed"] >= 0.0) & np.isfinite(kept["speed"])).all():
         raise _corrupt("speeds")

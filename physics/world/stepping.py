@@ -8,7 +8,7 @@ import numpy.typing as npt
 from ..kernels import kernel
 from ..kernels.borrowed import BYTE
 from ..kernels.portable.addresses import array_at
-from ..tolerances import MOST_RESTS
+from ..tolerances import FARTHEST, MOST_RESTS
 from .clock_time import later
 from .courses import move_to, place_at
 from .events import has_room, leave_all_sensors, leave_placed
@@ -64,7 +64,8 @@ def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
 
     If the buffer or a block of what is inside is full, it stops early and returns -1 - count. Call
     it again with larger ones that hold the same, and it continues. It returns `INVALID` if a
-    position or velocity of a world is not finite, or has become so, or its time.
+    position or velocity of a world is not finite or beyond `FARTHEST`, or has become so, or its
+    time.
 
     Args:
         call: where the worlds are, see `call_of`. Each array that Python passes to a kernel takes a
@@ -115,8 +116,8 @@ def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
 def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: float) -> int:
     """Prepare the plans of a step; return how many hits there are.
 
-    It returns `INVALID`, and does nothing, if a number is not finite. Plans from the last step
-    still hold, but for the bodies that somebody has moved since.
+    It returns `INVALID`, and does nothing, if a number is not finite, or too large. Plans from the
+    last step still hold, but for the bodies that somebody has moved since.
     """
     clock = clock_of(world)
     progress = progress_of(world)
@@ -129,7 +130,7 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
     if is_calm and clock.planned:
         return count
-    if not _are_finite(shown_of(world)):
+    if not _are_near(shown_of(world)):
         return INVALID
     _adopt_shown(world)
     if header_of(world).sensors > 0:
@@ -188,14 +189,13 @@ def _are_equal(motions: Motions, others: Motions) -> bool:
 
 
 @kernel
-def _are_finite(motions: Motions) -> bool:
-    """Return whether all positions and velocities are finite numbers."""
+def _are_near(motions: Motions) -> bool:
+    """Return whether all positions and velocities are numbers of which one may take the squares."""
     for slot in range(motions.shape[0]):
         motion = motions[slot]
-        # inf - inf and nan - nan are nan, and differ from 0.
-        total = abs(motion.x) + abs(motion.y) + abs(motion.vx) + abs(motion.vy)
-        if total - total != 0.0:
-            return False
+        for number in (motion.x, motion.y, motion.vx, motion.vy):
+            if not abs(number) <= FARTHEST:  # nor is nan
+                return False
     return True
 
 
@@ -288,7 +288,7 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         after.x, after.y, after.vx, after.vy = x, y, vx, vy
         total += abs(x) + abs(y) + abs(vx) + abs(vy)
     clock.time, clock.time_low = end, end_low
-    if not total < math.inf and not _are_finite(shown):
+    if not total <= FARTHEST and not _are_near(shown):
         clock.planned = 0
         return INVALID
     return count

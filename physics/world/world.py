@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, near, near_all, not_negative, vector, whole
+from ..arguments import finite, integer, inverse_mass, near_all, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..drawing import draw_scene
 from ..errors import HitLimitWarning
@@ -178,8 +178,8 @@ class World:
 
         Raises:
             InseparableError: no finite translation separates two solid bodies of which one moves.
-            ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
-                large for a number.
+            ValueError: ``dt`` is negative or not finite, or a position or velocity is beyond 1e140,
+                or has become so.
             RuntimeError: another call is in progress.
         """
         # Most steps save this call, and the next but one.
@@ -208,12 +208,12 @@ class World:
     @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that contain a point."""
-        return self._overlapping(POINT, near("point", point), mask)
+        return self._overlapping(POINT, vector("point", point), mask)
 
     @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that overlap a box, from its lower left corner up."""
-        low, high = near("lower", lower), near("upper", upper)
+        low, high = vector("lower", lower), vector("upper", upper)
         if not (low[0] < high[0] and low[1] < high[1]):
             raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
         middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
@@ -231,7 +231,7 @@ class World:
         a side does not. At a corner the normal points against the ray, but is turned no further
         than the normals of the corner's sides.
         """
-        ray = new_ray(*near("start", start), *near("end", end))
+        ray = new_ray(*vector("start", start), *vector("end", end))
         self._cast(ray, radius, mask)
         return answer_of(ray)
 

