@@ -14,7 +14,7 @@ from .clock_time import elapsed, is_earlier, later
 from .courses import margins_of, motion_at, place_at, short_way
 from .lookup.boxes import time_to_leave
 from .lookup.inside import find_inside
-from .lookup.neighbours import find_near
+from .lookup.neighbours import find_near, has_list
 from .lookup.tree import NO_ONE
 from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
@@ -23,6 +23,7 @@ from .tournament import replay
 from .view import (
     WorldView,
     edges_of,
+    list_of,
     motions_of,
     moving_of,
     near_of,
@@ -37,6 +38,9 @@ from .view import (
 # What is far from meeting a body is sorted out with this room, a fraction of the coordinates, and
 # the same fraction of the time.
 SPARE = 1e-9
+# A body that reaches a static one at the flattest angle may slide this fraction of the coordinates
+# until rounding no longer hides whether they touch, see `_meeting`.
+FLAT_WAY = 2.0 * TOUCH / FLATTEST
 
 
 @kernel
@@ -181,25 +185,30 @@ def _may_meet(
     now_low: float,
     left: float,
 ) -> bool:
-    """Return False only if the bounding boxes of two moving bodies stay apart.
+    """Return False only if the bounding boxes of two bodies stay apart.
 
     This sorts out most bodies around at a low cost. It leaves more room than rounding takes, so
     that it has no influence on any bit.
 
     Args:
-        world, slot: the first body; x, y: where it is now.
+        world, slot: the first body, which moves; x, y: where it is now.
         trait: of the other body.
         now, now_low: the time; left: how much time is left until something else happens.
     """
-    motion, theirs = motions_of(world)[slot], motions_of(world)[trait.slot]
-    plan = plans_of(world)[trait.slot]
-    since = elapsed(now, now_low, plan.at, plan.at_low)
-    their_x, their_y = theirs.x + theirs.vx * since, theirs.y + theirs.vy * since
-    dx, dy, ux, uy = their_x - x, their_y - y, theirs.vx - motion.vx, theirs.vy - motion.vy
+    motion = motions_of(world)[slot]
+    their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
     # All numbers from which the places were computed, or half of one.
-    far = abs(theirs.x) + abs(theirs.y) + abs(motion.x) + abs(motion.y)
-    far += abs(their_x) + abs(their_y) + abs(x) + abs(y)
-    room = SPARE * far
+    far, way = abs(motion.x) + abs(motion.y) + abs(x) + abs(y), 0.0
+    if trait.slot >= 0:
+        theirs, plan = motions_of(world)[trait.slot], plans_of(world)[trait.slot]
+        since = elapsed(now, now_low, plan.at, plan.at_low)
+        their_x, their_y = theirs.x + theirs.vx * since, theirs.y + theirs.vy * since
+        ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
+        far += abs(theirs.x) + abs(theirs.y)
+    else:
+        way = FLAT_WAY * (far + abs(their_x) + abs(their_y))
+    dx, dy = their_x - x, their_y - y
+    room = SPARE * (far + abs(their_x) + abs(their_y))
     shapes = shapes_of(world)
     one, other = shapes[traits_of(world)[moving_of(world)[slot]].collider], shapes[trait.collider]
     return not (
@@ -208,23 +217,25 @@ def _may_meet(
             dx + other.upper_x - one.lower_x + room,
             ux,
             left,
+            way,
         )
         or _stays_apart(
             dy + other.lower_y - one.upper_y - room,
             dy + other.upper_y - one.lower_y + room,
             uy,
             left,
+            way,
         )
     )
 
 
 @kernel
-def _stays_apart(lower: float, upper: float, velocity: float, left: float) -> bool:
-    """Return whether an interval that moves does not meet 0 in the time that is left."""
+def _stays_apart(lower: float, upper: float, velocity: float, left: float, way: float) -> bool:
+    """Return whether an interval that moves stays further than a way from 0 in the time left."""
     if lower > 0.0:
-        return not (velocity < 0.0 and lower + velocity * left <= 0.0)
+        return not (velocity < 0.0 and lower + velocity * left <= way)
     if upper < 0.0:
-        return not (velocity > 0.0 and upper + velocity * left >= 0.0)
+        return not (velocity > 0.0 and upper + velocity * left >= -way)
     return False
 
 
@@ -236,21 +247,25 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     So nothing but the two courses has an influence on it: no bit depends on the broad phase, or on
     the length of steps.
     """
-    traits, plans, near = traits_of(world), plans_of(world), near_of(world)
+    traits, plans = traits_of(world), plans_of(world)
     plan = plans[slot]
     body = moving_of(world)[slot]
     own = traits[body]
+    if not only_later and has_list(world, slot):
+        count, near = plan.near, list_of(world, slot)
+    else:
+        count, near = find_near(world, slot, only_later), near_of(world)
     x, y, vx, vy = motion_at(world, body, now, now_low)
     best, best_low = _plan_alone(world, slot, x, y, vx, vy, now, now_low)
     left = elapsed(best, best_low, now, now_low)
-    for index in range(find_near(world, slot, only_later)):
+    for index in range(count):
         other = near[index]
         trait = traits[other]
+        if not _may_meet(world, slot, trait, x, y, now, now_low, left):
+            continue
         since, since_low = plan.at, plan.at_low
         if trait.slot >= 0:
             theirs = plans[trait.slot]
-            if not _may_meet(world, slot, trait, x, y, now, now_low, left):
-                continue
             if is_earlier(since, since_low, theirs.at, theirs.at_low):
                 since, since_low = theirs.at, theirs.at_low
         time, normal_x, normal_y, slack = _meeting(

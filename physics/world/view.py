@@ -119,6 +119,13 @@ def links_of(world: WorldView) -> Indices:
 
 
 @accessor
+def list_of(world: WorldView, slot: int) -> Indices:
+    """Return the list of one of them, int64 [LINKS]."""
+    start = header_of(world).links_at + 8 * LINKS * slot
+    return borrowed(world.state, start, LINKS, INDEX)
+
+
+@accessor
 def grid_of(world: WorldView) -> GridRecord:
     """Return the `Grid` of these boxes."""
     return borrowed(world.state, header_of(world).grid_at, 1, Grid)[0]
