@@ -127,16 +127,16 @@ def _meeting(
     rounding decides. Bodies that touch or overlap meet only if they have to bounce. For so much as
     the slack before they meet, they touch already.
     """
-    shapes, plans, motions = shapes_of(world), plans_of(world), motions_of(world)
+    shapes, motions = shapes_of(world), motions_of(world)
     body = moving_of(world)[slot]
     own, trait = traits_of(world)[body], traits_of(world)[other]
-    motion, plan = motions[slot], plans[slot]
-    x, y = place_at(motion, plan, since, since_low)
+    motion, plan = motions[slot], plans_of(world)[slot]
+    x, y = place_at(motion, since, since_low)
     their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
     late = plan.slack
     if trait.slot >= 0:
         theirs = motions[trait.slot]
-        their_x, their_y = place_at(theirs, plans[trait.slot], since, since_low)
+        their_x, their_y = place_at(theirs, since, since_low)
         ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
     dx, dy = their_x - x, their_y - y
     if trait.slot < 0 and ux * ux + uy * uy > 0.0:
@@ -200,9 +200,8 @@ def _may_meet(
     # All numbers from which the places were computed, or half of one.
     far, way = abs(motion.x) + abs(motion.y) + abs(x) + abs(y), 0.0
     if trait.slot >= 0:
-        theirs, plan = motions_of(world)[trait.slot], plans_of(world)[trait.slot]
-        since = elapsed(now, now_low, plan.at, plan.at_low)
-        their_x, their_y = theirs.x + theirs.vx * since, theirs.y + theirs.vy * since
+        theirs = motions_of(world)[trait.slot]
+        their_x, their_y = place_at(theirs, now, now_low)
         ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
         far += abs(theirs.x) + abs(theirs.y)
     else:
@@ -247,8 +246,8 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     So nothing but the two courses has an influence on it: no bit depends on the broad phase, or on
     the length of steps.
     """
-    traits, plans = traits_of(world), plans_of(world)
-    plan = plans[slot]
+    traits, motions = traits_of(world), motions_of(world)
+    plan, motion = plans_of(world)[slot], motions[slot]
     body = moving_of(world)[slot]
     own = traits[body]
     if not only_later and has_list(world, slot):
@@ -263,9 +262,9 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
         trait = traits[other]
         if not _may_meet(world, slot, trait, x, y, now, now_low, left):
             continue
-        since, since_low = plan.at, plan.at_low
+        since, since_low = motion.at, motion.at_low
         if trait.slot >= 0:
-            theirs = plans[trait.slot]
+            theirs = motions[trait.slot]
             if is_earlier(since, since_low, theirs.at, theirs.at_low):
                 since, since_low = theirs.at, theirs.at_low
         time, normal_x, normal_y, slack = _meeting(

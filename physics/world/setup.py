@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..arguments import inverse_mass
 from ..body import FloatArray
+from ..kernels.layouts import aligned_bytes, in_lines
 from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
@@ -18,7 +19,21 @@ from .lookup.boxes import enter_static, typical_width
 from .lookup.grid import SPARE
 from .lookup.overrides import override_table
 from .lookup.tree import NO_ONE
-from .records import Box, Grid, Header, Member, Motion, Node, Plan, Progress, Touch, Trait, Tree
+from .records import (
+    Box,
+    Course,
+    Grid,
+    Header,
+    Member,
+    Motion,
+    Node,
+    Plan,
+    Progress,
+    Seat,
+    Touch,
+    Trait,
+    Tree,
+)
 from .tournament import leaf_count
 from .view import CLOCK_SIZE, LEVELS, LINKS, STACK
 
@@ -65,7 +80,7 @@ class Setup:
 
     def new_state(self, num_worlds: int) -> ByteArray:
         """Return zeroed states, uint8 [num_worlds, bytes]."""
-        return np.zeros((num_worlds, self.header.state_size), np.uint8)
+        return aligned_bytes(num_worlds, int(self.header.state_size))
 
     @property
     def header(self) -> Any:
@@ -77,7 +92,8 @@ class Setup:
 
         They are those that users see and may write between two steps.
         """
-        part: FloatArray = states[:, CLOCK_SIZE : self.header.shown_after_step_at].view(np.float64)
+        end = CLOCK_SIZE + Motion.itemsize * len(self.moving)
+        part: FloatArray = states[:, CLOCK_SIZE:end].view(np.float64)
         return part.reshape(len(states), len(self.moving), 4)
 
     def records(self, states: ByteArray, name: str, dtype: Any) -> npt.NDArray[Any]:
@@ -203,9 +219,9 @@ def _plan_state(header: npt.NDArray[Any]) -> None:
     sizes = {
         "shown_after_step_at": CLOCK_SIZE + Motion.itemsize * movers,
         "motions_at": Motion.itemsize * movers,
-        "plans_at": Motion.itemsize * movers,
+        "plans_at": Course.itemsize * movers,
         "winners_at": Plan.itemsize * movers,
-        "boxes_at": 8 * 2 * header["leaves"][0],
+        "boxes_at": Seat.itemsize * 2 * header["leaves"][0],
         "links_at": Box.itemsize * movers,
         "grid_at": 8 * LINKS * movers,
         "level_counts_at": Grid.itemsize,
@@ -214,20 +230,24 @@ def _plan_state(header: npt.NDArray[Any]) -> None:
     }
     end = 0
     for name, size in sizes.items():
-        end += int(size)
+        end = in_lines(end + int(size))
         header[name] = end
 
 
 def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> ByteArray:
     """Return one block: the header, into which offsets and lengths are written, and the parts."""
-    at = header.nbytes
+    at = in_lines(header.nbytes)
     for name, part in parts.items():
         header[f"{name}_at"] = at
         if name in (header.dtype.names or ()):
             header[name] = len(part)
-        at += part.nbytes
-    blocks = [header, *parts.values()]
-    return np.concatenate([block.view(np.uint8).ravel() for block in blocks])
+        at += in_lines(part.nbytes)
+    block = aligned_bytes(1, at)[0]
+    block[: header.nbytes] = header.view(np.uint8)
+    for name, part in parts.items():
+        start = int(header[f"{name}_at"][0])
+        block[start : start + part.nbytes] = part.view(np.uint8).ravel()
+    return block
 
 
 def with_query(setup: Setup, collider: Collider) -> tuple[Any, Any]:

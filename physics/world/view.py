@@ -11,6 +11,8 @@ from .records import (
     Boxes,
     Clock,
     ClockRecord,
+    Course,
+    Courses,
     Grid,
     GridRecord,
     Header,
@@ -32,6 +34,8 @@ from .records import (
     Plans,
     Progress,
     ProgressRecord,
+    Seat,
+    Seats,
     Touch,
     Touches,
     Trait,
@@ -81,13 +85,10 @@ def shown_after_step_of(world: WorldView) -> Motions:
 
 
 @accessor
-def motions_of(world: WorldView) -> Motions:
-    """Return the motions of the moving bodies, `Motion` [movers].
-
-    Each holds the place where its body last changed its course, at the time in its plan.
-    """
+def motions_of(world: WorldView) -> Courses:
+    """Return the courses of the moving bodies, `Course` [movers]."""
     header = header_of(world)
-    return borrowed(world.state, header.motions_at, header.movers, Motion)
+    return borrowed(world.state, header.motions_at, header.movers, Course)
 
 
 @accessor
@@ -98,10 +99,10 @@ def plans_of(world: WorldView) -> Plans:
 
 
 @accessor
-def winners_of(world: WorldView) -> Indices:
-    """Return the tournament of the plans, int64 [2 * leaves]."""
+def winners_of(world: WorldView) -> Seats:
+    """Return the tournament of the plans, `Seat` [2 * leaves]."""
     header = header_of(world)
-    return borrowed(world.state, header.winners_at, 2 * header.leaves, INDEX)
+    return borrowed(world.state, header.winners_at, 2 * header.leaves, Seat)
 
 
 @accessor

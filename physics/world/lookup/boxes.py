@@ -11,7 +11,7 @@ import math
 
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
-from ..clock_time import elapsed
+from ..courses import place_at
 from ..records import Block, PlanRecord
 from ..view import (
     WorldView,
@@ -131,9 +131,8 @@ def fit(world: WorldView, slot: int, x: float, y: float, margin: float) -> None:
 @kernel
 def fit_here(world: WorldView, slot: int, now: float, now_low: float, margin: float) -> None:
     """Put a body's box about the place where it is at a time."""
-    motion, plan = motions_of(world)[slot], plans_of(world)[slot]
-    since = elapsed(now, now_low, plan.at, plan.at_low)
-    fit(world, slot, motion.x + motion.vx * since, motion.y + motion.vy * since, margin)
+    x, y = place_at(motions_of(world)[slot], now, now_low)
+    fit(world, slot, x, y, margin)
 
 
 @kernel
