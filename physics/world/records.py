@@ -330,7 +330,6 @@ Motions: TypeAlias = Any  # `Motion` [movers]
 TraitRecord: TypeAlias = Any  # one `Trait`
 Traits: TypeAlias = Any  # `Trait` [bodies]
 Overrides: TypeAlias = Any  # `Override` [pairs]
-SeatRecord: TypeAlias = Any  # one `Seat`
 Seats: TypeAlias = Any  # `Seat` [2 * leaves]
 HeaderRecord: TypeAlias = Any  # one `Header`
 BoxRecord: TypeAlias = Any  # one `Box`

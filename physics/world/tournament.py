@@ -10,7 +10,7 @@ import math
 
 from ..kernels import kernel
 from .clock_time import is_earlier
-from .records import Plans, SeatRecord, Seats
+from .records import Plans, Seats
 
 
 def leaf_count(players: int) -> int:
@@ -19,11 +19,11 @@ def leaf_count(players: int) -> int:
 
 
 @kernel
-def _is_later(plans: Plans, one: SeatRecord, other: SeatRecord) -> bool:
-    """Return whether the plan of one seat comes after that of another one."""
-    if one.time != other.time or one.slot < 0 or other.slot < 0 or one.time == math.inf:
-        return bool(one.time > other.time)
-    left, right = plans[one.slot], plans[other.slot]
+def _is_later(plans: Plans, one: int, other: int) -> bool:
+    """Return whether the plan of one slot comes after that of another one at the same time."""
+    if one < 0 or other < 0:
+        return False
+    left, right = plans[one], plans[other]
     if left.time_low != right.time_low:
         return bool(left.time_low > right.time_low)
     return bool(left.pair > right.pair)
@@ -32,10 +32,12 @@ def _is_later(plans: Plans, one: SeatRecord, other: SeatRecord) -> bool:
 @kernel
 def _play(seats: Seats, plans: Plans, node: int) -> None:
     """Let the better of a node's two children have its seat."""
-    seat = seats[node]
-    winner, other = seats[2 * node], seats[2 * node + 1]
-    if _is_later(plans, winner, other):
-        winner = other
+    left, right = seats[2 * node], seats[2 * node + 1]
+    # Without a branch, which a processor could not foresee.
+    place = 2 * node + (right.time < left.time)
+    if right.time == left.time and _is_later(plans, left.slot, right.slot):
+        place = 2 * node + 1
+    seat, winner = seats[node], seats[place]
     seat.time, seat.slot = winner.time, winner.slot
 
 

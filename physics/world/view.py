@@ -239,16 +239,16 @@ def progress_of(world: WorldView) -> ProgressRecord:
 
 @accessor
 def near_of(world: WorldView) -> Indices:
-    """Return scratch memory for the bodies that one may meet, int64 [bodies]."""
+    """Return scratch memory for the bodies that one may meet, int64 [bodies + 1]."""
     header = header_of(world)
-    return borrowed(world.workspace, header.near_at, header.bodies, INDEX)
+    return borrowed(world.workspace, header.near_at, header.bodies + 1, INDEX)
 
 
 @accessor
 def found_of(world: WorldView) -> Indices:
-    """Return scratch memory for the slots that a search in the grid finds, int64 [bodies]."""
+    """Return scratch memory for the slots that a search in the grid finds, int64 [bodies + 1]."""
     header = header_of(world)
-    return borrowed(world.workspace, header.found_at, header.bodies, INDEX)
+    return borrowed(world.workspace, header.found_at, header.bodies + 1, INDEX)
 
 
 @accessor
