@@ -4,7 +4,7 @@ from ..kernels import kernel
 from ..pairs.touching import touch_margins
 from ..tolerances import NO_WAY, SLIDE, TOUCH
 from .clock_time import elapsed
-from .records import MotionRecord, PlanRecord
+from .records import CourseRecord
 from .view import WorldView, edges_of, motions_of, plans_of, shapes_of, traits_of
 
 
@@ -17,16 +17,14 @@ def motion_at(
     if trait.slot < 0:
         return trait.home_x, trait.home_y, 0.0, 0.0
     motion = motions_of(world)[trait.slot]
-    x, y = place_at(motion, plans_of(world)[trait.slot], now, now_low)
+    x, y = place_at(motion, now, now_low)
     return x, y, motion.vx, motion.vy
 
 
 @kernel
-def place_at(
-    motion: MotionRecord, plan: PlanRecord, now: float, now_low: float
-) -> tuple[float, float]:
+def place_at(motion: CourseRecord, now: float, now_low: float) -> tuple[float, float]:
     """Return the position (x, y) of a moving body at a time."""
-    since = elapsed(now, now_low, plan.at, plan.at_low)
+    since = elapsed(now, now_low, motion.at, motion.at_low)
     return motion.x + motion.vx * since, motion.y + motion.vy * since
 
 
@@ -45,7 +43,7 @@ def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
             plan.rests = 0
         plan.nowhere = not way > NO_WAY * size
         motion.x, motion.y = x, y
-        plan.at, plan.at_low = now, now_low
+        motion.at, motion.at_low = now, now_low
 
 
 @kernel

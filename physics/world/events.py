@@ -17,8 +17,8 @@ from .view import (
     first_inside_of,
     header_of,
     inside_of,
+    motions_of,
     pairs_of,
-    plans_of,
     progress_of,
     shapes_of,
     traits_of,
@@ -156,7 +156,7 @@ def leave_placed(world: WorldView, hits: Hits, count: int, world_index: int) -> 
 def _is_fresh(world: WorldView, body: int) -> bool:
     """Return whether a body has begun a new course since the last step."""
     slot = traits_of(world)[body].slot
-    return bool(slot >= 0 and plans_of(world)[slot].fresh)
+    return bool(slot >= 0 and motions_of(world)[slot].fresh)
 
 
 @kernel

@@ -9,7 +9,7 @@ from ..body import Body, FloatArray
 from ..errors import InseparableError
 from ..shapes.colliders import Collider
 from .lookup.inside import inside_blocks, pairs_inside
-from .records import Clock, Motion, Plan
+from .records import Clock, Course, Motion
 from .setup import BodySpec, ByteArray, build_setup, inseparable_pair, with_query
 from .states import Stepper
 
@@ -94,12 +94,14 @@ class Built:
         self.states: ByteArray = self.setup.new_state(1)
         self.motions: FloatArray = self.setup.motion_view(self.states)[0]
         self.motions[:] = self._first_motions[self.setup.moving]
-        for part in ("shown_after_step", "motions"):
-            self.setup.records(self.states, part, Motion)[0] = self.motions.view(Motion)[:, 0]
-        plans = self.setup.records(self.states, "plans", Plan)[0]
-        plans["at"], plans["at_low"] = scene.time
-        plans["speed"] = np.abs(self.motions[:, 2:]).sum(axis=1)
-        plans["fresh"] = 1
+        shown = self.motions.view(Motion)[:, 0]
+        self.setup.records(self.states, "shown_after_step", Motion)[0] = shown
+        courses = self.setup.records(self.states, "motions", Course)[0]
+        for name in shown.dtype.names or ():
+            courses[name] = shown[name]
+        courses["at"], courses["at_low"] = scene.time
+        courses["speed"] = np.abs(self.motions[:, 2:]).sum(axis=1)
+        courses["fresh"] = 1
         self.clock = self.states[0, : Clock.itemsize].view(Clock)
         self.clock["time"], self.clock["time_low"] = scene.time
         self.clock["capped"] = scene.capped

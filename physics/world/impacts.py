@@ -37,7 +37,7 @@ def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> in
     plans = plans_of(world)
     winners = winners_of(world)
     while not progress.full and has_room(world, hits, count):
-        slot = winners[1]
+        slot = winners[1].slot
         if slot < 0:
             break
         plan = plans[slot]

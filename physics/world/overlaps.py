@@ -28,7 +28,6 @@ from .view import (
     motions_of,
     moving_of,
     near_of,
-    plans_of,
     progress_of,
     shapes_of,
     touches_of,
@@ -46,12 +45,12 @@ def relax_overlaps(world: WorldView) -> bool:
     are moved apart together now and then. The overlaps that remain are noted in the progress as
     crowded, and the next step continues with them.
     """
-    plans = plans_of(world)
+    motions = motions_of(world)
     has_moved, has_room_for_all = False, True
     for number in range(RELAX_ROUNDS):
         deepest = 0.0
-        for slot in range(plans.shape[0]):
-            if plans[slot].fresh:
+        for slot in range(motions.shape[0]):
+            if motions[slot].fresh:
                 deepest = max(deepest, _relax_body(world, slot))
         if deepest == 0.0:
             return has_moved
@@ -75,10 +74,10 @@ def _relax_together(world: WorldView, deepest: float) -> bool:
         deepest: of the last overlaps. Only gaps that are not much wider matter.
     """
     clear_group(world)
-    plans, near = plans_of(world), near_of(world)
-    for slot in range(plans.shape[0]):
+    motions, near = motions_of(world), near_of(world)
+    for slot in range(motions.shape[0]):
         body = moving_of(world)[slot]
-        if not plans[slot].fresh or traits_of(world)[body].inverse_mass == 0.0:
+        if not motions[slot].fresh or traits_of(world)[body].inverse_mass == 0.0:
             continue
         for index in range(_find_close(world, slot)):
             _join_close(world, body, near[index], RELAX_REACH * deepest)
@@ -121,13 +120,13 @@ def _join_close(world: WorldView, a: int, b: int, reach: float) -> None:
 @kernel
 def _relax_body(world: WorldView, slot: int) -> float:
     """Move a fresh body out of others; return the depth of the deepest overlap."""
-    traits, plans, near = traits_of(world), plans_of(world), near_of(world)
+    traits, motions, near = traits_of(world), motions_of(world), near_of(world)
     body = moving_of(world)[slot]
     deepest = 0.0
     for index in range(_find_close(world, slot)):
         other = near[index]
         theirs = traits[other].slot
-        if 0 <= theirs < slot and plans[theirs].fresh:
+        if 0 <= theirs < slot and motions[theirs].fresh:
             continue  # it was its turn
         found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
         if found:
@@ -172,9 +171,9 @@ def _begin_anew(world: WorldView, body: int) -> None:
     trait = traits_of(world)[body]
     if trait.inverse_mass > 0.0:
         move_to(world, body, clock_of(world).time, clock_of(world).time_low)
-        if not plans_of(world)[trait.slot].fresh:
+        if not motions_of(world)[trait.slot].fresh:
             motion = motions_of(world)[trait.slot]
-            plans_of(world)[trait.slot].fresh = 1
+            motions_of(world)[trait.slot].fresh = 1
             fit(world, trait.slot, motion.x, motion.y, first_margin(world, trait.slot))
 
 
@@ -249,7 +248,7 @@ def resolve_overlaps(world: WorldView, hits: Hits, count: int, world_index: int)
     a thin one. It stops early if there is no room for more hits, and can be called again.
     """
     progress = progress_of(world)
-    while progress.next_slot < plans_of(world).shape[0]:
+    while progress.next_slot < motions_of(world).shape[0]:
         body = moving_of(world)[progress.next_slot]
         near = find_near(world, progress.next_slot, True)
         sort_items(near_of(world), near)

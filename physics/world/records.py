@@ -2,7 +2,7 @@
 
 Three blocks of memory hold a world. Each is one array of bytes, so that a kernel call costs little:
 
-- its *state*, which changes: `Clock`, the `Motion` of every moving body, the `Plan` of each with
+- its *state*, which changes: `Clock`, the `Course` of every moving body, the `Plan` of each with
   the order of these plans in time, and the grid of their boxes. A batch is a matrix with one such
   row per world.
 - which bodies are *inside* which sensor, see `lookup.inside`: it grows with what is inside.
@@ -43,7 +43,7 @@ Clock = record_dtype(
         ("time_low", np.float64),
         ("capped", np.int64),  # how often a body used up its hits of a step, or had no room
         ("planned", np.int64),  # 1: the plans hold, but for fresh bodies and those that users moved
-        ("fresh", np.int64),  # 1: there are fresh bodies, see `Plan`
+        ("fresh", np.int64),  # 1: there are fresh bodies, see `Course`
     ]
 )
 
@@ -53,6 +53,21 @@ Motion = record_dtype(
         ("y", np.float64),
         ("vx", np.float64),
         ("vy", np.float64),
+    ]
+)
+
+# The course of a moving body: where it was when it last changed its motion, and since when it has
+# flown straight on. 64 bytes, as a processor reads them.
+Course = record_dtype(
+    [
+        ("x", np.float64),
+        ("y", np.float64),
+        ("vx", np.float64),
+        ("vy", np.float64),
+        ("at", np.float64),  # when it was there
+        ("at_low", np.float64),
+        ("speed", np.float64),  # |vx| + |vy|, the most since a user last wrote it
+        ("fresh", np.int64),  # 1: its plan does not hold, and it may overlap others
     ]
 )
 
@@ -83,6 +98,7 @@ Header = record_dtype(
         ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
         ("inelastic", np.int64),  # 1: some bodies do not bounce
         ("typical", np.float64),  # length: the median of the bodies' sizes
+        ("margin", np.float64),  # of the first box of a typical body, see `lookup.boxes`
         ("cell", np.float64),  # size of the cells of the grid that suit a typical body
         ("has_grid", np.int64),  # 0: so few bodies move that a grid of them is not worth it
         # Where each part of the workspace begins, in bytes, and its number of items where that is
@@ -126,30 +142,27 @@ Header = record_dtype(
     ]
 )
 
+# 192 bytes: what is used together is in one of three lines, as a processor reads them.
 Plan = record_dtype(
     [
         ("time", np.float64),  # when it happens
         ("time_low", np.float64),
-        ("at", np.float64),  # when the body was where its motion says
-        ("at_low", np.float64),
-        ("hits", np.int64),  # in this step, see `count_hit`; from 0 again at each later stage
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
         ("pair", np.int64),  # the two bodies as one number, whichever of them plans
-        ("normal_x", np.float64),  # from this body to its partner
-        ("normal_y", np.float64),
-        ("slack", np.float64),  # what rounding may add to the time until it meets its partner
-        ("tied", np.int64),  # 1: it meets another body at the same time
-        ("speed", np.float64),  # |vx| + |vy|, the most since a user last wrote it
-        ("rests", np.int64),  # how often it has come to rest since it went some way
-        ("instant", np.int64),  # hits at the time of its last one
-        ("nowhere", np.int64),  # 1: it went next to nowhere to its last one
-        ("stage", np.int64),  # FREE, INERT, CRUSHED or HELD
-        ("fresh", np.int64),  # 1: its plan does not hold, and it may overlap others
         # The slots of the bodies that plan to meet this one are a list; -1 where it ends.
         ("suitor", np.int64),
         ("next_suitor", np.int64),
         ("previous_suitor", np.int64),
+        ("normal_x", np.float64),  # from this body to its partner
+        ("normal_y", np.float64),
+        ("slack", np.float64),  # what rounding may add to the time until it meets its partner
+        ("tied", np.int32),  # 1: it meets another body at the same time
+        ("nowhere", np.int32),  # 1: it went next to nowhere to its last hit
+        ("hits", np.int64),  # in this step, see `count_hit`; from 0 again at each later stage
+        ("rests", np.int64),  # how often it has come to rest since it went some way
+        ("instant", np.int64),  # hits at the time of its last one
+        ("stage", np.int64),  # FREE, INERT, CRUSHED or HELD
         # Its box, see `lookup.boxes`: where it was made, when, and whether it is in the grid.
         ("middle_x", np.float64),
         ("middle_y", np.float64),
@@ -161,6 +174,9 @@ Plan = record_dtype(
         ("previous", np.int64),  # the slot before it in the list of its cell, or -1
     ]
 )
+
+# A place in the tournament of plans: whose plan it is, and when.
+Seat = record_dtype([("time", np.float64), ("slot", np.int64)])
 
 # Where a body may be before it leaves its box, with the body's extent; and its place in the grid.
 # 64 bytes, as a processor reads them.
@@ -309,11 +325,13 @@ Block: TypeAlias = Any  # uint8 [bytes]
 Blocks: TypeAlias = Any  # uint8 [worlds, bytes]
 Indices: TypeAlias = Any  # int64 [n]
 ClockRecord: TypeAlias = Any  # one `Clock`
-MotionRecord: TypeAlias = Any  # one `Motion`
+CourseRecord: TypeAlias = Any  # one `Course`
+Courses: TypeAlias = Any  # `Course` [movers]
 Motions: TypeAlias = Any  # `Motion` [movers]
 TraitRecord: TypeAlias = Any  # one `Trait`
 Traits: TypeAlias = Any  # `Trait` [bodies]
 Overrides: TypeAlias = Any  # `Override` [pairs]
+Seats: TypeAlias = Any  # `Seat` [2 * leaves]
 HeaderRecord: TypeAlias = Any  # one `Header`
 BoxRecord: TypeAlias = Any  # one `Box`
 Boxes: TypeAlias = Any  # `Box` [n]

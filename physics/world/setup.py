@@ -10,15 +10,30 @@ import numpy.typing as npt
 
 from ..arguments import inverse_mass
 from ..body import FloatArray
+from ..kernels.layouts import aligned_bytes, in_lines
 from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
-from .lookup.boxes import enter_static, typical_width
+from .lookup.boxes import enter_static, typical_margin, typical_width
 from .lookup.grid import SPARE
 from .lookup.overrides import override_table
 from .lookup.tree import NO_ONE
-from .records import Box, Grid, Header, Member, Motion, Node, Plan, Progress, Touch, Trait, Tree
+from .records import (
+    Box,
+    Course,
+    Grid,
+    Header,
+    Member,
+    Motion,
+    Node,
+    Plan,
+    Progress,
+    Seat,
+    Touch,
+    Trait,
+    Tree,
+)
 from .tournament import leaf_count
 from .view import CLOCK_SIZE, LEVELS, LINKS, STACK
 
@@ -65,7 +80,7 @@ class Setup:
 
     def new_state(self, num_worlds: int) -> ByteArray:
         """Return zeroed states, uint8 [num_worlds, bytes]."""
-        return np.zeros((num_worlds, self.header.state_size), np.uint8)
+        return aligned_bytes(num_worlds, int(self.header.state_size))
 
     @property
     def header(self) -> Any:
@@ -77,7 +92,8 @@ class Setup:
 
         They are those that users see and may write between two steps.
         """
-        part: FloatArray = states[:, CLOCK_SIZE : self.header.shown_after_step_at].view(np.float64)
+        end = CLOCK_SIZE + Motion.itemsize * len(self.moving)
+        part: FloatArray = states[:, CLOCK_SIZE:end].view(np.float64)
         return part.reshape(len(states), len(self.moving), 4)
 
     def records(self, states: ByteArray, name: str, dtype: Any) -> npt.NDArray[Any]:
@@ -136,7 +152,10 @@ def build_setup(
     header["max_hits"], header["continuous"] = max_hits, continuous
     header["inelastic"] = (traits["restitution"] == 0.0).any() or 0.0 in overrides.values()
     header["typical"] = _typical(sizes[traits["boundless"] == 0])
-    header["cell"] = typical_width(header["typical"][0]) * (1.0 + 4.0 * SPARE)
+    typical = float(header["typical"][0])
+    margin = typical_margin(typical, _spacing(positions[traits["boundless"] == 0]))
+    header["margin"] = margin
+    header["cell"] = typical_width(typical, margin) * (1.0 + 4.0 * SPARE)
     header["has_grid"] = len(moving) > FEW_MOVING
     header["bodies"], header["movers"] = len(specs), len(moving)
     header["sensors"] = len(sensing)
@@ -154,8 +173,8 @@ def build_setup(
         static_nodes=np.zeros(2 * len(specs) if is_tree.any() else 0, Node),
         overrides=override_table(overrides),
         progress=np.zeros(1, Progress),
-        near=np.zeros(len(specs), np.int64),
-        found=np.zeros(len(specs), np.int64),
+        near=np.zeros(len(specs) + 1, np.int64),
+        found=np.zeros(len(specs) + 1, np.int64),
         stale=np.zeros(len(moving), np.int64),
         places=np.zeros(len(moving), np.int64),
         members=np.zeros(group, Member),
@@ -175,6 +194,15 @@ def _typical(sizes: FloatArray) -> float:
     """Return a length that suits most bodies; 1 if all are points."""
     extended = sizes[sizes > 0.0]
     return float(np.median(extended)) if len(extended) else 1.0
+
+
+def _spacing(positions: FloatArray) -> float:
+    """Return how far bodies are apart, about where half of them are; 0 for a few or in a row."""
+    if len(positions) < FEW_MOVING:
+        return 0.0
+    low, high = np.quantile(positions, (0.25, 0.75), axis=0)
+    width, height = 2.0 * (high - low)
+    return float(np.sqrt(width * height / len(positions)))
 
 
 def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
@@ -203,9 +231,9 @@ def _plan_state(header: npt.NDArray[Any]) -> None:
     sizes = {
         "shown_after_step_at": CLOCK_SIZE + Motion.itemsize * movers,
         "motions_at": Motion.itemsize * movers,
-        "plans_at": Motion.itemsize * movers,
+        "plans_at": Course.itemsize * movers,
         "winners_at": Plan.itemsize * movers,
-        "boxes_at": 8 * 2 * header["leaves"][0],
+        "boxes_at": Seat.itemsize * 2 * header["leaves"][0],
         "links_at": Box.itemsize * movers,
         "grid_at": 8 * LINKS * movers,
         "level_counts_at": Grid.itemsize,
@@ -214,20 +242,24 @@ def _plan_state(header: npt.NDArray[Any]) -> None:
     }
     end = 0
     for name, size in sizes.items():
-        end += int(size)
+        end = in_lines(end + int(size))
         header[name] = end
 
 
 def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> ByteArray:
     """Return one block: the header, into which offsets and lengths are written, and the parts."""
-    at = header.nbytes
+    at = in_lines(header.nbytes)
     for name, part in parts.items():
         header[f"{name}_at"] = at
         if name in (header.dtype.names or ()):
             header[name] = len(part)
-        at += part.nbytes
-    blocks = [header, *parts.values()]
-    return np.concatenate([block.view(np.uint8).ravel() for block in blocks])
+        at += in_lines(part.nbytes)
+    block = aligned_bytes(1, at)[0]
+    block[: header.nbytes] = header.view(np.uint8)
+    for name, part in parts.items():
+        start = int(header[f"{name}_at"][0])
+        block[start : start + part.nbytes] = part.view(np.uint8).ravel()
+    return block
 
 
 def with_query(setup: Setup, collider: Collider) -> tuple[Any, Any]:

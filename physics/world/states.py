@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import not_negative, whole
-from ..kernels.layouts import record_dtype
+from ..kernels.layouts import aligned_bytes, record_dtype
 from ..kernels.sealed import seal, unseal
 from ..tolerances import FARTHEST
 from .lookup.inside import inside_blocks, pairs_inside
-from .records import END, Clock, Header, Hit, Motion, Plan
+from .records import END, Clock, Course, Header, Hit, Motion, Plan
 from .setup import ByteArray, Setup
 from .stepping import INVALID, call_of, step_worlds
 from .view import CLOCK_SIZE
@@ -36,7 +36,7 @@ Kept = record_dtype(
         ("fresh", np.int64),
     ]
 )
-_OF_PLANS = ("at", "at_low", "speed", "fresh")  # the same in `Plan`
+_OF_COURSES = ("at", "at_low", "speed", "fresh")
 _MANY = 1 << 60  # of what is counted
 
 
@@ -56,7 +56,8 @@ class Stepper:
     """
 
     def __init__(self, setup: Setup, states: ByteArray, insides: ByteArray) -> None:
-        self.workspace = setup.workspace.copy()
+        self.workspace = aligned_bytes(1, len(setup.workspace))[0]
+        self.workspace[:] = setup.workspace
         self._states = states
         self._has_sensors = len(setup.sensing) > 0
         self._hits: npt.NDArray[Any]
@@ -126,12 +127,13 @@ def pack_states(states: ByteArray, insides: Iterable[ByteArray], setup: Setup) -
         setup: what the worlds share.
     """
     kept = np.zeros((len(states), len(setup.moving)), Kept)
-    plans = setup.records(states, "plans", Plan)
-    kept["shown"] = states[:, CLOCK_SIZE : setup.header.shown_after_step_at].view(Motion)
+    courses = setup.records(states, "motions", Course)
+    kept["shown"] = setup.motion_view(states).view(Motion)[..., 0]
     kept["after_step"] = setup.records(states, "shown_after_step", Motion)
-    kept["motion"] = setup.records(states, "motions", Motion)
-    for name in _OF_PLANS:
-        kept[name] = plans[name]
+    for name in Motion.names or ():
+        kept["motion"][name] = courses[name]
+    for name in _OF_COURSES:
+        kept[name] = courses[name]
     clocks = states[:, :CLOCK_SIZE].copy().view(Clock)
     clocks["planned"] = 0
     pairs = [own for part in insides for own in pairs_inside(part)]
@@ -178,14 +180,16 @@ def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> ByteArray
         _check_pairs(own, setup)
     insides = inside_blocks(own_pairs, bodies, len(setup.sensing) > 0)
     states[:, :CLOCK_SIZE] = clocks.view(np.uint8).reshape(worlds, CLOCK_SIZE)
-    states[:, CLOCK_SIZE : setup.header.shown_after_step_at].view(Motion)[:] = kept["shown"]
+    setup.motion_view(states).view(Motion)[..., 0] = kept["shown"]
     setup.records(states, "shown_after_step", Motion)[:] = kept["after_step"]
-    setup.records(states, "motions", Motion)[:] = kept["motion"]
+    courses = setup.records(states, "motions", Course)
+    for name in Motion.names or ():
+        courses[name] = kept["motion"][name]
+    for name in _OF_COURSES:
+        courses[name] = kept[name]
     plans = setup.records(states, "plans", Plan)
     for name in ("hits", "rests", "instant", "nowhere", "stage"):
         plans[name] = 0
-    for name in _OF_PLANS:
-        plans[name] = kept[name]
     return insides
 
 

@@ -152,28 +152,28 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
 @kernel
 def _adopt_shown(world: WorldView) -> None:
     """Let every body that a user has moved begin a new course, and be fresh."""
-    clock, plans = clock_of(world), plans_of(world)
+    clock = clock_of(world)
     motions, shown, after_step = motions_of(world), shown_of(world), shown_after_step_of(world)
-    for slot in range(plans.shape[0]):
-        seen, after, plan = shown[slot], after_step[slot], plans[slot]
+    for slot in range(motions.shape[0]):
+        seen, after = shown[slot], after_step[slot]
         if seen.x != after.x or seen.y != after.y or seen.vx != after.vx or seen.vy != after.vy:
             motion = motions[slot]
             motion.x, motion.y, motion.vx, motion.vy = seen.x, seen.y, seen.vx, seen.vy
             after.x, after.y, after.vx, after.vy = seen.x, seen.y, seen.vx, seen.vy
-            plan.at, plan.at_low = clock.time, clock.time_low
-            plan.speed = abs(seen.vx) + abs(seen.vy)
-            plan.fresh = 1
+            motion.at, motion.at_low = clock.time, clock.time_low
+            motion.speed = abs(seen.vx) + abs(seen.vy)
+            motion.fresh = 1
             clock.fresh = 1
 
 
 @kernel
 def _end_freshness(world: WorldView) -> None:
     """Note that the plans of all bodies hold, unless relaxation has left overlaps."""
-    plans = plans_of(world)
+    motions = motions_of(world)
     if not progress_of(world).crowded:
         clock_of(world).fresh = 0
-        for slot in range(plans.shape[0]):
-            plans[slot].fresh = 0
+        for slot in range(motions.shape[0]):
+            motions[slot].fresh = 0
 
 
 @kernel
@@ -211,12 +211,12 @@ def _move_all(world: WorldView) -> None:
 @kernel
 def _plan(world: WorldView, anew: bool) -> None:
     """Make the plans of fresh bodies, and of those that planned to meet them; or all plans."""
-    plans = plans_of(world)
+    motions = motions_of(world)
     progress_of(world).touching = 0
     fresh = 0
-    for slot in range(plans.shape[0]):
-        fresh += plans[slot].fresh
-    if anew or 2 * fresh > plans.shape[0]:
+    for slot in range(motions.shape[0]):
+        fresh += motions[slot].fresh
+    if anew or 2 * fresh > motions.shape[0]:
         _plan_all(world)
     else:
         _plan_fresh(world)
@@ -242,17 +242,17 @@ def _plan_all(world: WorldView) -> None:
 @kernel
 def _plan_fresh(world: WorldView) -> None:
     """Make the plans of fresh bodies, and of those that planned to meet them."""
-    clock, plans, stale = clock_of(world), plans_of(world), stale_of(world)
+    clock, motions, stale = clock_of(world), motions_of(world), stale_of(world)
     count = 0
-    for slot in range(plans.shape[0]):
-        if plans[slot].fresh:
+    for slot in range(motions.shape[0]):
+        if motions[slot].fresh:
             count = find_stale(world, slot, count)
             fit_here(world, slot, clock.time, clock.time_low, first_margin(world, slot))
-    for slot in range(plans.shape[0]):
-        if plans[slot].fresh:
+    for slot in range(motions.shape[0]):
+        if motions[slot].fresh:
             predict(world, slot, clock.time, clock.time_low, False)
     for index in range(count):
-        if not plans[stale[index]].fresh:
+        if not motions[stale[index]].fresh:
             predict(world, stale[index], clock.time, clock.time_low, False)
 
 
@@ -274,13 +274,13 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
     for slot in range(header.movers):
         motion, plan, seen, after = motions[slot], plans[slot], shown[slot], after_step[slot]
         vx, vy = motion.vx, motion.vy
-        x, y = place_at(motion, plan, end, end_low)
+        x, y = place_at(motion, end, end_low)
         if not header.continuous:
             motion.x, motion.y = x, y
-            plan.at, plan.at_low = end, end_low
+            motion.at, motion.at_low = end, end_low
         if not header.continuous or plan.stage >= CRUSHED or plan.rests >= MOST_RESTS:
             # What it passes by in this step, it hits in the next one.
-            plan.fresh = 1
+            motion.fresh = 1
             clock.fresh = 1
         plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE

@@ -11,6 +11,8 @@ from .records import (
     Boxes,
     Clock,
     ClockRecord,
+    Course,
+    Courses,
     Grid,
     GridRecord,
     Header,
@@ -32,6 +34,8 @@ from .records import (
     Plans,
     Progress,
     ProgressRecord,
+    Seat,
+    Seats,
     Touch,
     Touches,
     Trait,
@@ -81,13 +85,10 @@ def shown_after_step_of(world: WorldView) -> Motions:
 
 
 @accessor
-def motions_of(world: WorldView) -> Motions:
-    """Return the motions of the moving bodies, `Motion` [movers].
-
-    Each holds the place where its body last changed its course, at the time in its plan.
-    """
+def motions_of(world: WorldView) -> Courses:
+    """Return the courses of the moving bodies, `Course` [movers]."""
     header = header_of(world)
-    return borrowed(world.state, header.motions_at, header.movers, Motion)
+    return borrowed(world.state, header.motions_at, header.movers, Course)
 
 
 @accessor
@@ -98,10 +99,10 @@ def plans_of(world: WorldView) -> Plans:
 
 
 @accessor
-def winners_of(world: WorldView) -> Indices:
-    """Return the tournament of the plans, int64 [2 * leaves]."""
+def winners_of(world: WorldView) -> Seats:
+    """Return the tournament of the plans, `Seat` [2 * leaves]."""
     header = header_of(world)
-    return borrowed(world.state, header.winners_at, 2 * header.leaves, INDEX)
+    return borrowed(world.state, header.winners_at, 2 * header.leaves, Seat)
 
 
 @accessor
@@ -116,6 +117,13 @@ def links_of(world: WorldView) -> Indices:
     """Return the lists of bodies that moving ones may meet, int64 [LINKS * movers]."""
     header = header_of(world)
     return borrowed(world.state, header.links_at, LINKS * header.movers, INDEX)
+
+
+@accessor
+def list_of(world: WorldView, slot: int) -> Indices:
+    """Return the list of one of them, int64 [LINKS]."""
+    start = header_of(world).links_at + 8 * LINKS * slot
+    return borrowed(world.state, start, LINKS, INDEX)
 
 
 @accessor
@@ -231,16 +239,16 @@ def progress_of(world: WorldView) -> ProgressRecord:
 
 @accessor
 def near_of(world: WorldView) -> Indices:
-    """Return scratch memory for the bodies that one may meet, int64 [bodies]."""
+    """Return scratch memory for the bodies that one may meet, int64 [bodies + 1]."""
     header = header_of(world)
-    return borrowed(world.workspace, header.near_at, header.bodies, INDEX)
+    return borrowed(world.workspace, header.near_at, header.bodies + 1, INDEX)
 
 
 @accessor
 def found_of(world: WorldView) -> Indices:
-    """Return scratch memory for the slots that a search in the grid finds, int64 [bodies]."""
+    """Return scratch memory for the slots that a search in the grid finds, int64 [bodies + 1]."""
     header = header_of(world)
-    return borrowed(world.workspace, header.found_at, header.bodies, INDEX)
+    return borrowed(world.workspace, header.found_at, header.bodies + 1, INDEX)
 
 
 @accessor

@@ -130,7 +130,10 @@ def find_in_grid(
     found: Indices,
     count: int,
 ) -> int:
-    """Append the slots of bodies whose boxes touch or overlap one; return how many there are."""
+    """Append the slots of bodies whose boxes touch or overlap one; return how many there are.
+
+    ``found`` has room for one more than all of them: what is looked at is written first.
+    """
     grid, counts = grid_of(world), level_counts_of(world)
     for level in range(grid.lowest, grid.highest + 1):
         if counts[level] > 0:
@@ -172,14 +175,13 @@ def _find_on_level(
             while slot != NO_ONE:
                 box = boxes[slot]
                 # Several cells may share a bucket.
-                if (
+                found[count] = slot
+                count += (
                     touch(box, lower_x, lower_y, upper_x, upper_y)
-                    and box.column == column
-                    and box.row == row
-                    and box.level == level
-                ):
-                    found[count] = slot
-                    count += 1
+                    & (box.column == column)
+                    & (box.row == row)
+                    & (box.level == level)
+                )
                 slot = box.next
     return count
 
@@ -187,9 +189,10 @@ def _find_on_level(
 @kernel
 def touch(box: BoxRecord, lower_x: float, lower_y: float, upper_x: float, upper_y: float) -> bool:
     """Return whether a box touches or overlaps another one, which is given by its sides."""
+    # Without a branch, which a processor could not foresee.
     return bool(
-        lower_x <= box.upper_x
-        and upper_x >= box.lower_x
-        and lower_y <= box.upper_y
-        and upper_y >= box.lower_y
+        (lower_x <= box.upper_x)
+        & (upper_x >= box.lower_x)
+        & (lower_y <= box.upper_y)
+        & (upper_y >= box.lower_y)
     )

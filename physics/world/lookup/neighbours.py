@@ -37,6 +37,12 @@ def interacts(one: TraitRecord, other: TraitRecord) -> bool:
 
 
 @kernel
+def has_list(world: WorldView, slot: int) -> bool:
+    """Return whether a body's list has all that it may meet before it leaves its box."""
+    return bool(header_of(world).has_grid and plans_of(world)[slot].near != TOO_MANY)
+
+
+@kernel
 def find_near(world: WorldView, slot: int, only_later: bool) -> int:
     """Write the bodies that a moving body may meet into ``near``; return how many.
 

@@ -35,7 +35,7 @@ def meets_alone(world: WorldView, slot: int) -> bool:
     # If the partner plans something else at the same time, that counts, too.
     if other >= 0 and plans[other].partner != moving_of(world)[slot]:
         other = -1
-    return is_far_ahead(winners_of(world), plans, slot, other, plan.time + plan.slack)
+    return is_far_ahead(winners_of(world), slot, other, plan.time + plan.slack)
 
 
 @kernel
@@ -61,7 +61,7 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
     latest, latest_low = later(now, now_low, plans[slot].slack)
     node = next_due(winners, plans, 0, latest, latest_low)
     while node > 0:
-        other = winners[node]
+        other = winners[node].slot
         plan = plans[other]
         # The times may differ by what rounding may do to either.
         wait = elapsed(plan.time, plan.time_low, now, now_low)

@@ -10,6 +10,7 @@ from ..view import (
     WorldView,
     inside_of,
     members_of,
+    motions_of,
     plans_of,
     progress_of,
     touches_of,
@@ -78,13 +79,13 @@ def _move_on(
     for index in range(progress.members):
         member = members[index]
         slot = traits_of(world)[member.body].slot
-        plan = plans_of(world)[slot]
+        motion = motions_of(world)[slot]
         if member.met > 0 and member.inverse_mass > 0.0:
             count = leave_sensors(world, hits, count, world_index, member.body, now, now_low)
             move_to(world, member.body, now, now_low)
             rest_x, rest_y = exactness * member.turn_x, exactness * member.turn_y
             turn_velocity(world, slot, member.vx, member.vy, rest_x, rest_y)
-        plan.speed = max(plan.speed, speed)
+        motion.speed = max(motion.speed, speed)
     for index in range(progress.touches):
         touch = touches[index]
         a, b = touch.a, touch.b

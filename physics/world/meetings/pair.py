@@ -30,11 +30,11 @@ def turn_velocity(
         vx, vy: the velocity.
         rest_x, rest_y: what rounding may have left of each.
     """
-    motion, plan = motions_of(world)[slot], plans_of(world)[slot]
+    motion = motions_of(world)[slot]
     # What is too large for a number stays so, and is noticed as the step ends.
     motion.vx = 0.0 if abs(vx) <= rest_x < math.inf else vx
     motion.vy = 0.0 if abs(vy) <= rest_y < math.inf else vy
-    plan.speed = max(plan.speed, abs(vx) + abs(vy))
+    motion.speed = max(motion.speed, abs(vx) + abs(vy))
 
 
 @kernel

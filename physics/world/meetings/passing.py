@@ -3,7 +3,7 @@
 from ...kernels import kernel
 from ...tolerances import MOST_RESTS, NO_APPROACH, SLIDE
 from ..records import CRUSHED, FREE, HELD
-from ..view import WorldView, plans_of, progress_of, traits_of
+from ..view import WorldView, motions_of, plans_of, progress_of, traits_of
 
 
 @kernel
@@ -36,7 +36,7 @@ def slowest_hit(world: WorldView, a: int, b: int) -> float:
     for body in (a, b):
         slot = traits_of(world)[body].slot
         if slot >= 0:
-            speed += plans_of(world)[slot].speed
+            speed += motions_of(world)[slot].speed
     return NO_APPROACH * speed
 
 
