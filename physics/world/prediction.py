@@ -184,6 +184,8 @@ def _may_meet(
         trait: of the other body.
         now, now_low: the time; left: how much time is left until something else happens.
     """
+    if left == math.inf:
+        return True
     motion = motions_of(world)[slot]
     their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
     # All numbers from which the places were computed, or half of one.
@@ -208,7 +210,7 @@ def _may_meet(
         dy + other.upper_y - one.lower_y + room,
     )
     way_x, way_y = ux * left, uy * left
-    # An interval of distances that stays on one side of 0, on either axis. Without a branch, which
+    # An interval of distances that stays on one side of 0, on either axis. Without branches, which
     # a processor could not foresee.
     return not (
         ((left_x > 0.0) & (left_x + way_x > way))
