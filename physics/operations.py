@@ -224,14 +224,10 @@ def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float, float, float]:
         bx, by = b.position
         dx = float(bx - ax)
         dy = float(by - ay)
-    except (AttributeError, TypeError, ValueError):
+    except (AttributeError, TypeError, ValueError, OverflowError):  # overflow of integers
         _check(a)
         _check(b)
         raise
-    except OverflowError:  # of integers
-        _check(a)
-        _check(b)
-        raise ValueError("the positions are too far apart for a float") from None
     if not (abs(dx) <= FARTHEST and abs(dy) <= FARTHEST):
         if not (math.isfinite(dx) and math.isfinite(dy)):
             raise ValueError(f"positions must be finite, but are ({ax}, {ay}) and ({bx}, {by})")
