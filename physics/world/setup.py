@@ -254,7 +254,7 @@ def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> ByteArray:
         if name in (header.dtype.names or ()):
             header[name] = len(part)
         at += in_lines(part.nbytes)
-    block = aligned_bytes(1, at)[0]
+    block: ByteArray = aligned_bytes(1, at)[0]
     block[: header.nbytes] = header.view(np.uint8)
     for name, part in parts.items():
         start = int(header[f"{name}_at"][0])

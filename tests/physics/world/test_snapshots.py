@@ -20,7 +20,7 @@ from arkanoid.physics import (
     WorldBatch,
 )
 from arkanoid.physics.world.lookup.inside import inside_blocks
-from arkanoid.physics.world.records import Plan
+from arkanoid.physics.world.records import Course
 from helpers.bodies import SMALL_SHAPES, room
 from helpers.processes import run_python
 from hypothesis import given, settings
@@ -278,7 +278,7 @@ def test_what_no_step_leaves_is_refused_and_changes_nothing(name: str, value: fl
     before = world.snapshot()
     built = world.built()
     # Far from what it may be.
-    built.setup.records(built.states, "plans", Plan)[name] = value
+    built.setup.records(built.states, "motions", Course)[name] = value
     forged = world.snapshot()
     world.restore(before)
     with pytest.raises(ValueError, match="no world can have such courses"):
