@@ -21,4 +21,4 @@ class InseparableError(ValueError):
 
 
 class HitLimitWarning(RuntimeWarning):
-    """A body used up its hits of one step, and stayed where it was for the rest of the step."""
+    """A body has no room, or used up its hits of one step; then it does not bounce in that step."""

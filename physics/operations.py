@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arguments import duration as checked_duration
-from .arguments import inverse_mass, near, not_negative, vector
+from .arguments import inverse_mass, not_negative, vector
 from .body import FloatArray
 from .errors import InseparableError
 from .pairs.response import bounce_velocities, shares
@@ -94,7 +94,9 @@ def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> 
     shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
     velocity_ax, velocity_ay = _velocity(a)
     velocity_bx, velocity_by = _velocity(b)
-    velocity = near("the relative velocity", (velocity_bx - velocity_ax, velocity_by - velocity_ay))
+    velocity = vector(
+        "the relative velocity", (velocity_bx - velocity_ax, velocity_by - velocity_ay)
+    )
     time, normal_x, normal_y = impact_between(
         shapes,
         edges,
@@ -222,18 +224,14 @@ def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float, float, float]:
         bx, by = b.position
         dx = float(bx - ax)
         dy = float(by - ay)
-    except (AttributeError, TypeError, ValueError):
+    except (AttributeError, TypeError, ValueError, OverflowError):  # overflow of integers
         _check(a)
         _check(b)
         raise
-    except OverflowError:  # of integers
-        _check(a)
-        _check(b)
-        raise ValueError("the positions are too far apart for a float") from None
     if not (abs(dx) <= FARTHEST and abs(dy) <= FARTHEST):
         if not (math.isfinite(dx) and math.isfinite(dy)):
             raise ValueError(f"positions must be finite, but are ({ax}, {ay}) and ({bx}, {by})")
-        near("the distance between the positions", (dx, dy))
+        vector("the distance between the positions", (dx, dy))
     margin_x, margin_y = touch_margins(
         shapes, edges, 0, 1, float(ax), float(ay), float(bx), float(by)
     )

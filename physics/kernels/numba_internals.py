@@ -195,13 +195,16 @@ events.register("numba:compile", CompilerListener())
 
 @intrinsic
 def borrowed_view(typing_context: Any, block: Any, start: Any, count: Any, dtype: Any) -> Any:
-    """Return an array that looks into a block of bytes and owns no part of it."""
+    """Return an array that looks into a block of bytes, or its address, and owns no part of it."""
     array_type = types.Array(dtype.dtype, 1, "C")
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        source = make_array(signature.args[0])(context, builder, arguments[0])
         view = make_array(array_type)(context, builder)
-        address = builder.gep(source.data, [arguments[1]])
+        if isinstance(block, types.Integer):
+            first = builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
+        else:
+            first = make_array(signature.args[0])(context, builder, arguments[0]).data
+        address = builder.gep(first, [arguments[1]])
         size = context.get_abi_sizeof(context.get_data_type(array_type.dtype))
         size = context.get_constant(types.intp, getattr(array_type.dtype, "size", size))
         populate_array(
@@ -215,6 +218,17 @@ def borrowed_view(typing_context: Any, block: Any, start: Any, count: Any, dtype
         return view._getvalue()
 
     return array_type(block, types.intp, types.intp, dtype), generate
+
+
+@intrinsic
+def block_address(typing_context: Any, block: Any) -> Any:
+    """Return the address of a block of bytes."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.ptrtoint(data, context.get_value_type(types.intp))
+
+    return types.intp(block), generate
 
 
 @intrinsic

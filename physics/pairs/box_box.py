@@ -46,14 +46,10 @@ def sweep_box_box(
     if time >= parts or time > duration:
         return NO_IMPACT
     is_x = touches_x >= touches_y
-    if sinks_x > time and sinks_y > time:
-        # Corner meets corner: perhaps they pass before they overlap. If not, either side may be
-        # met, and the slower one changes less. So a box that comes down almost along a floor does
-        # not meet the side of the next tile.
-        if max(sinks_x, sinks_y) >= parts:
-            return NO_IMPACT
-        if vx != vy:
-            is_x = vx > vy
+    if sinks_x > time and sinks_y > time and vx != vy:
+        # Corner meets corner. Either side may be met, and the slower one changes less. So a box
+        # that comes down almost along a floor does not meet the side of the next tile.
+        is_x = vx > vy
     if is_x:
         return time, sign_x, 0.0
     return time, 0.0, sign_y

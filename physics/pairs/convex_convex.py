@@ -90,24 +90,21 @@ def _slowest_axis(
     time: float,
     normal_x: float,
     normal_y: float,
-) -> tuple[float, float, bool]:
-    """Return (x, y, is_corner): the slowest of all axes that touch at the time of an impact.
+) -> tuple[float, float]:
+    """Return (x, y): the slowest of all axes that touch at the time of an impact.
 
     If corner meets corner there are several: a slower one than the given normal changes less. So a
     body that comes down almost along a floor does not meet the side of the next tile.
     """
-    first_x, first_y, is_corner = normal_x, normal_y, False
     margin = margin_along(normal_x, normal_y, margin_x, margin_y)
     least = closing_speed(normal_x, normal_y, vx, vy, margin)
     for axis in range(shapes[a].count + shapes[b].count):
         x, y, gap = separation_along(shapes, edges, a, b, axis, dx, dy)
         margin = margin_along(x, y, margin_x, margin_y)
         closing = closing_speed(x, y, vx, vy, margin)
-        if axis_times(gap, closing, margin)[1] > time:
-            is_corner = is_corner or abs(first_x * y - first_y * x) > PARALLEL
-            if closing < least:
-                normal_x, normal_y, least = x, y, closing
-    return normal_x, normal_y, is_corner
+        if closing < least and axis_times(gap, closing, margin)[1] > time:
+            normal_x, normal_y, least = x, y, closing
+    return normal_x, normal_y
 
 
 @kernel
@@ -125,20 +122,17 @@ def sweep_convex_convex(
     margin_y: float,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y); region b starts at (dx, dy) and moves with (vx, vy)."""
-    time, sinks, parts = -1.0, -1.0, math.inf
+    time, parts = -1.0, math.inf
     normal_x = 0.0
     normal_y = 0.0
     for axis in range(shapes[a].count + shapes[b].count):
         x, y, gap = separation_along(shapes, edges, a, b, axis, dx, dy)
         margin = margin_along(x, y, margin_x, margin_y)
-        axis_touches, axis_sinks, axis_parts = axis_times(
-            gap, closing_speed(x, y, vx, vy, margin), margin
-        )
+        axis_touches, _, axis_parts = axis_times(gap, closing_speed(x, y, vx, vy, margin), margin)
         if axis_touches == math.inf:
             return NO_IMPACT
         if axis_touches > time:
             time, normal_x, normal_y = axis_touches, x, y
-        sinks = max(sinks, axis_sinks)
         parts = min(parts, axis_parts)
     if time < 0.0:
         _, normal_x, normal_y, _ = contact_convex_convex(
@@ -148,9 +142,7 @@ def sweep_convex_convex(
     if time >= parts or time > duration:
         return NO_IMPACT
     if margin_x > 0.0 or margin_y > 0.0:
-        normal_x, normal_y, is_corner = _slowest_axis(
+        normal_x, normal_y = _slowest_axis(
             shapes, edges, a, b, dx, dy, vx, vy, margin_x, margin_y, time, normal_x, normal_y
         )
-        if is_corner and sinks >= parts:
-            return NO_IMPACT
     return time, normal_x, normal_y

@@ -3,9 +3,9 @@
 Along an axis from a to b there is a gap between the two, negative if they overlap. Rounding hides
 whether a gap of a few of the last digits is one, so two bodies *touch* along an axis if the gap is
 at most a margin, on either side of 0. They *overlap* if they do so by more than the margin along
-every axis. An impact is a touch of two that approach. At a corner, where they touch along several
-axes, it is one only if they will overlap. A box that slides along a row of boxes therefore meets
-none of them: along the vertical axis it touches each, and does not approach.
+every axis. An impact is a touch of two that approach. A disc that touches a corner has one only if
+they will overlap. A box that slides along a row of boxes therefore meets none of them: along the
+vertical axis it touches each, and does not approach.
 
 Margins are two lengths, along x and along y. With margins of 0, numbers are compared as they are.
 """

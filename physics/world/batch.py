@@ -32,14 +32,13 @@ class WorldBatch:
     Attributes:
         moving: int64 [m], the indices of the bodies that move.
         positions, velocities: float64 [num_worlds, m, 2], of these bodies. Views of the states:
-            write to them to change the next step. A body with a new position is inside no sensor
-            until a step finds it there.
+            write to them to change the next step.
     """
 
     def __init__(self, world: World, num_worlds: int, *, threads: int = 1) -> None:
         count = whole("num_worlds", num_worlds, at_least=1)
         parts = min(count, whole("threads", threads, at_least=1))
-        setup, self._states = world.copies(count)
+        setup, self._states, insides = world.copies(count)
         self._setup = setup
         self.moving = setup.moving
         motions = setup.motion_view(self._states)
@@ -48,7 +47,8 @@ class WorldBatch:
         cuts = np.linspace(0, count, parts + 1).astype(int)
         self._starts = cuts[:-1].tolist()
         self._steppers = [
-            Stepper(setup, self._states[start:stop]) for start, stop in itertools.pairwise(cuts)
+            Stepper(setup, self._states[start:stop], insides[start:stop])
+            for start, stop in itertools.pairwise(cuts)
         ]
         self._threads = Threads("arkanoid-worlds")
         self._closed = False
@@ -71,7 +71,7 @@ class WorldBatch:
 
     @property
     def capped(self) -> npt.NDArray[np.int64]:
-        """How often a body has used up its hits of a step, int64 [num_worlds], a copy."""
+        """How often a body has used up its hits of a step, or had no room, int64 [num_worlds]."""
         return self._clocks()["capped"].copy()
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
@@ -81,8 +81,8 @@ class WorldBatch:
             `Hit` records, by world (field ``world``) and time, as `World.step` returns them.
 
         Raises:
-            ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
-                large for a number.
+            ValueError: ``dt`` is negative or not finite, or a position or velocity is beyond 1e140,
+                or has become so.
             RuntimeError: the batch has several threads and is closed, or another call is in
                 progress.
         """
@@ -108,7 +108,9 @@ class WorldBatch:
 
     def snapshot(self) -> bytes:
         """Return all that changes as the worlds are stepped, as bytes for `restore`."""
-        return self._alone.run(pack_states, self._states, self._setup)
+        return self._alone.run(
+            pack_states, self._states, [part.insides for part in self._steppers], self._setup
+        )
 
     def restore(self, snapshot: bytes) -> None:
         """Go back to a snapshot of a batch of this size of the same world.
@@ -116,7 +118,12 @@ class WorldBatch:
         Raises:
             ValueError: if it is corrupt, or of another batch. This batch does not change then.
         """
-        self._alone.run(unpack_states, snapshot, self._states, self._setup)
+        self._alone.run(self._restore, snapshot)
+
+    def _restore(self, snapshot: bytes) -> None:
+        insides = unpack_states(snapshot, self._states, self._setup)
+        for start, part in zip(self._starts, self._steppers, strict=True):
+            part.insides = insides[start : start + len(part.insides)]
 
     def close(self) -> None:
         """End the threads, if there are any."""

@@ -6,19 +6,20 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, overlap_between
 from ..pairs.touching_point import touching_point
 from .clock_time import is_earlier, later
-from .prediction import motion_at
+from .courses import margins_of, motion_at
+from .lookup.inside import has_free_pair, put_inside, take_outside
+from .lookup.tree import NO_ONE
 from .records import BEGIN, END, Hits
 from .view import (
     WorldView,
     clock_of,
     edges_of,
+    first_inside_of,
     header_of,
     inside_of,
-    motions_after_step_of,
     motions_of,
-    moving_of,
+    pairs_of,
     progress_of,
-    sensing_of,
     shapes_of,
     traits_of,
 )
@@ -27,8 +28,8 @@ from .view import (
 @kernel
 def has_room(world: WorldView, hits: Hits, count: int) -> bool:
     """Return whether there is room for all that one event may cause; note it if not."""
-    # A hit, and the sensors that its two bodies leave.
-    if hits.shape[0] - count > 2 * header_of(world).sensors:
+    # A hit, and all that is inside sensors may leave; or one more is inside.
+    if hits.shape[0] - count > inside_of(world).count and has_free_pair(world):
         return True
     progress_of(world).full = 1
     return False
@@ -59,8 +60,9 @@ def write_event(
     hit.time = time
     hit.a = a
     hit.b = b
-    hit.normal[0] = normal_x
-    hit.normal[1] = normal_y
+    # The sum turns -0 into 0: no bit tells which of the two was first.
+    hit.normal[0] = normal_x + 0.0
+    hit.normal[1] = normal_y + 0.0
     hit.point[0] = point_x
     hit.point[1] = point_y
     hit.impulse = impulse
@@ -72,6 +74,8 @@ def contact_point(
     world: WorldView, a: int, b: int, now: float, now_low: float, normal_x: float, normal_y: float
 ) -> tuple[float, float]:
     """Return the point at which two bodies touch along the normal from a to b."""
+    if a > b:
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
     x, y = touching_point(
@@ -101,11 +105,10 @@ def enter_sensor(
     normal_y: float,
 ) -> int:
     """Note that a body enters a sensor, in either order; return how many events there are."""
-    bodies = traits_of(world).shape[0]
     if traits_of(world)[a].sensor >= 0:
-        inside_of(world)[traits_of(world)[a].sensor * bodies + b] = 1
+        put_inside(world, a, b)
     else:
-        inside_of(world)[traits_of(world)[b].sensor * bodies + a] = 1
+        put_inside(world, b, a)
     x, y = contact_point(world, a, b, now, now_low, normal_x, normal_y)
     return write_event(
         world, hits, count, world_index, BEGIN, now, a, b, normal_x, normal_y, x, y, 0.0
@@ -113,20 +116,63 @@ def enter_sensor(
 
 
 @kernel
-def forget_moved(world: WorldView) -> None:
-    """Empty the sensors of bodies that the user moved between two steps, and moved sensors."""
-    bodies = traits_of(world).shape[0]
-    motions, after_step = motions_of(world), motions_after_step_of(world)
-    inside = inside_of(world)
-    for slot in range(motions.shape[0]):
-        if motions[slot].x == after_step[slot].x and motions[slot].y == after_step[slot].y:
-            continue
-        moved = moving_of(world)[slot]
-        own = traits_of(world)[moved].sensor
-        for row in range(sensing_of(world).shape[0]):
-            inside[row * bodies + moved] = 0
-            if row == own:
-                inside[row * bodies : (row + 1) * bodies] = 0
+def leave_placed(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
+    """Note which sensors bodies are no longer inside as a step begins, because somebody moved one.
+
+    It returns how many events there are. A body that was placed inside again has not left.
+    """
+    clock, firsts, pairs = clock_of(world), first_inside_of(world), pairs_of(world)
+    if inside_of(world).count == 0:
+        return count
+    for body in range(firsts.shape[0]):
+        place = firsts[body]
+        while place != NO_ONE:
+            sensor = pairs[place].sensor
+            place = pairs[place].next
+            if not (_is_fresh(world, body) or _is_fresh(world, sensor)):
+                continue
+            if not _overlap(world, sensor, body):
+                take_outside(world, sensor, body)
+                x, y, _, _ = motion_at(world, body, clock.time, clock.time_low)
+                count = write_event(
+                    world,
+                    hits,
+                    count,
+                    world_index,
+                    END,
+                    clock.time,
+                    sensor,
+                    body,
+                    0.0,
+                    0.0,
+                    x,
+                    y,
+                    0.0,
+                )
+    return count
+
+
+@kernel
+def _is_fresh(world: WorldView, body: int) -> bool:
+    """Return whether a body has begun a new course since the last step."""
+    slot = traits_of(world)[body].slot
+    return bool(slot >= 0 and motions_of(world)[slot].fresh)
+
+
+@kernel
+def _overlap(world: WorldView, a: int, b: int) -> bool:
+    """Return whether two bodies overlap, or touch and are about to, as a step begins."""
+    now, now_low = clock_of(world).time, clock_of(world).time_low
+    one, other = traits_of(world)[a].collider, traits_of(world)[b].collider
+    x, y, vx, vy = motion_at(world, a, now, now_low)
+    their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
+    dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
+    shapes, edges = shapes_of(world), edges_of(world)
+    margin_x, margin_y = margins_of(world, a, b, x, y, their_x, their_y)
+    if overlap_between(shapes, edges, one, other, dx, dy, margin_x, margin_y):
+        return True
+    time, _, _ = impact_between(shapes, edges, one, other, dx, dy, ux, uy, 0.0, margin_x, margin_y)
+    return bool(time == 0.0)
 
 
 @kernel
@@ -165,7 +211,7 @@ def leave_sensor(
     )
     if back == math.inf:
         back = 0.0
-    inside_of(world)[here.sensor * traits_of(world).shape[0] + body] = 0
+    take_outside(world, sensor, body)
     exit_time, exit_low = later(now, now_low, -back)
     begin, begin_low = clock_of(world).time, clock_of(world).time_low
     if is_earlier(exit_time, exit_low, begin, begin_low):
@@ -187,11 +233,14 @@ def leave_sensors(
     now_low: float,
 ) -> int:
     """Note which sensors a body has left, before it changes its course."""
-    bodies = traits_of(world).shape[0]
-    for row in range(sensing_of(world).shape[0]):
-        if inside_of(world)[row * bodies + body]:
-            sensor = sensing_of(world)[row]
-            count = leave_sensor(world, hits, count, world_index, sensor, body, now, now_low)
+    if header_of(world).sensors == 0:
+        return count
+    pairs = pairs_of(world)
+    place = first_inside_of(world)[body]
+    while place != NO_ONE:
+        pair = pairs[place]
+        place = pair.next
+        count = leave_sensor(world, hits, count, world_index, pair.sensor, body, now, now_low)
     return count
 
 
@@ -199,16 +248,10 @@ def leave_sensors(
 def leave_all_sensors(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
     """Note which bodies left which sensors in this step; return how many events there are."""
     progress = progress_of(world)
-    sensing = sensing_of(world)
-    inside = inside_of(world)
-    bodies = traits_of(world).shape[0]
-    end, end_low = progress.end, progress.end_low
-    for row in range(sensing.shape[0]):
-        for body in range(bodies):
-            if inside[row * bodies + body]:
-                if progress.full or not has_room(world, hits, count):
-                    return count
-                count = leave_sensor(
-                    world, hits, count, world_index, sensing[row], body, end, end_low
-                )
+    if inside_of(world).count == 0:
+        return count
+    if progress.full or not has_room(world, hits, count):
+        return count
+    for body in range(first_inside_of(world).shape[0]):
+        count = leave_sensors(world, hits, count, world_index, body, progress.end, progress.end_low)
     return count

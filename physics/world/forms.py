@@ -4,13 +4,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from ..body import Body, FloatArray
 from ..errors import InseparableError
-from .records import Clock
-from .setup import BodySpec, ByteArray, build_setup, inseparable_pair
+from ..shapes.colliders import Collider
+from .lookup.inside import inside_blocks, pairs_inside
+from .records import Clock, Course, Motion
+from .setup import BodySpec, ByteArray, build_setup, inseparable_pair, with_query
 from .states import Stepper
+
+MOST_TABLES = 16  # of shapes that queries ask about, kept for the next query
 
 
 @dataclass
@@ -25,7 +28,7 @@ class Scene:
         overrides: the restitution of single pairs, a < b.
         inside: pairs of a sensor and a body inside it.
         time: as a sum of two numbers, see `clock_time`.
-        capped: how often a body has used up its hits of a step.
+        capped: how often a body has used up its hits of a step, or had no room.
     """
 
     is_continuous: bool
@@ -59,10 +62,6 @@ class Scene:
         """Return x, y, vx, vy of all bodies, float64 [n, 4], a copy."""
         return np.array(self.motions, np.float64).reshape(-1, 4)
 
-    def forget_inside(self, index: int) -> None:
-        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        self.inside = {pair for pair in self.inside if index not in pair}
-
 
 class Built:
     """A world as kernels step it, made from a scene.
@@ -95,16 +94,34 @@ class Built:
         self.states: ByteArray = self.setup.new_state(1)
         self.motions: FloatArray = self.setup.motion_view(self.states)[0]
         self.motions[:] = self._first_motions[self.setup.moving]
-        self.setup.motions_after_step_view(self.states)[0] = self.motions
-        self._inside: npt.NDArray[np.uint8] = self.setup.inside_view(self.states)[0]
-        for row, sensor in enumerate(self.setup.sensing.tolist()):
-            for body in range(len(scene.specs)):
-                self._inside[row, body] = (sensor, body) in scene.inside
+        shown = self.motions.view(Motion)[:, 0]
+        self.setup.records(self.states, "shown_after_step", Motion)[0] = shown
+        courses = self.setup.records(self.states, "motions", Course)[0]
+        for name in shown.dtype.names or ():
+            courses[name] = shown[name]
+        courses["at"], courses["at_low"] = scene.time
+        courses["speed"] = np.abs(self.motions[:, 2:]).sum(axis=1)
+        courses["fresh"] = 1
         self.clock = self.states[0, : Clock.itemsize].view(Clock)
         self.clock["time"], self.clock["time_low"] = scene.time
         self.clock["capped"] = scene.capped
+        self.clock["fresh"] = 1
         self.warned = scene.capped
-        self.stepper = Stepper(self.setup, self.states)
+        self._tables: dict[Collider, tuple[ByteArray, ByteArray]] = {}
+        pairs = np.array(sorted((body, sensor) for sensor, body in scene.inside), np.int64)
+        blocks = inside_blocks(
+            [pairs.reshape(-1, 2)[:, ::-1]], len(scene.specs), len(self.setup.sensing) > 0
+        )
+        self.stepper = Stepper(self.setup, self.states, blocks)
+
+    def tables_with(self, shape: Collider) -> tuple[ByteArray, ByteArray]:
+        """Return (shapes, edges) of the world with one more shape at the end, uint8 [bytes]."""
+        if shape not in self._tables:
+            if len(self._tables) == MOST_TABLES:
+                self._tables.clear()
+            shapes, edges = with_query(self.setup, shape)
+            self._tables[shape] = shapes.view(np.uint8), edges.view(np.uint8)
+        return self._tables[shape]
 
     @property
     def capped(self) -> int:
@@ -117,16 +134,10 @@ class Built:
         motions[self.setup.moving] = self.motions
         return motions
 
-    def forget_inside(self, index: int) -> None:
-        """Take a body out of all sensors, and all bodies out of it, if it is a sensor."""
-        self._inside[:, index] = 0
-        self._inside[self.setup.sensing == index] = 0
-        self.clock["planned"] = 0
-
     def write_back(self, scene: Scene) -> None:
         """Write into the scene what stepping has changed."""
         scene.motions = self.all_motions().tolist()
-        rows, bodies = np.nonzero(self._inside)
-        scene.inside = set(zip(self.setup.sensing[rows].tolist(), bodies.tolist(), strict=True))
+        (pairs,) = pairs_inside(self.stepper.insides)
+        scene.inside = {(sensor, body) for sensor, body in pairs.tolist()}
         scene.time = (float(self.clock["time"][0]), float(self.clock["time_low"][0]))
         scene.capped = self.capped

@@ -1,21 +1,22 @@
 """The events of a continuous step, each at its exact time, in the order of time."""
 
 from ..kernels import kernel
-from ..pairs.response import bounce_velocities
 from .clock_time import is_earlier
+from .courses import is_short_way, move_to
 from .events import contact_point, enter_sensor, has_room, leave_sensors, write_event
-from .grid import enter, leave
-from .prediction import find_stale, is_capped, is_inside, motion_at, predict
-from .records import CROSS_X, HIT, MEET, NOTHING, Hits
+from .lookup.boxes import fit_here, next_margin
+from .meetings.changes import count_hit, plan_after_hit
+from .meetings.gathering import meets_alone
+from .meetings.outcome import meet_together
+from .meetings.pair import bounce_pair, velocity_of
+from .meetings.passing import inverse_mass_of, slowest_hit
+from .prediction import is_inside, predict
+from .records import HIT, LOOK, MEET, Hits
 from .view import (
     WorldView,
-    clock_of,
-    motions_of,
     moving_of,
-    overrides_of,
     plans_of,
     progress_of,
-    stale_of,
     traits_of,
     winners_of,
 )
@@ -25,151 +26,110 @@ from .view import (
 def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
     """Carry out all plans until the step ends, the earliest first; return how many hits there are.
 
-    It stops earlier if there is no room for more hits, and can be called again to continue. It
-    always ends: a body has no more hits than `max_hits`, and between two of them it crosses each
-    border and enters each sensor at most once.
+    It stops earlier if there is no room for more hits, and can be called again to continue.
+
+    It always ends, whatever the numbers are. Every meeting counts as a hit of a body that is not
+    yet held, and no body has more of these than `max_hits` in each of the three stages before.
+    Between two of them a body enters each sensor at most once, looks again at most once, and leaves
+    boxes of which each is twice as large as the one before.
     """
     progress = progress_of(world)
     plans = plans_of(world)
     winners = winners_of(world)
-    while has_room(world, hits, count):
-        slot = winners[1]
+    while not progress.full and has_room(world, hits, count):
+        slot = winners[1].slot
         if slot < 0:
             break
         plan = plans[slot]
         if is_earlier(progress.end, progress.end_low, plan.time, plan.time_low):
             break
-        if plan.kind == MEET:
+        if plan.kind == LOOK:
+            _look(world, slot)
+        elif plan.kind != MEET:
+            _leave_box(world, slot)
+        elif _is_sensed(world, slot):
+            count = _enter(world, hits, count, world_index, slot)
+        elif meets_alone(world, slot):
             count = _meet(world, hits, count, world_index, slot)
         else:
-            _cross_border(world, slot)
+            now, now_low = plan.time, plan.time_low
+            count = meet_together(world, hits, count, world_index, slot, now, now_low)
     return count
 
 
 @kernel
-def _cross_border(world: WorldView, slot: int) -> None:
-    """Move a body to the next cell of the grid, as it planned."""
+def _leave_box(world: WorldView, slot: int) -> None:
+    """Let a body leave its box and get another one, as it planned."""
     plan = plans_of(world)[slot]
-    motion = motions_of(world)[slot]
-    leave(world, slot)
-    if plan.kind == CROSS_X:
-        plan.column += 1 if motion.vx > 0.0 else -1
-    else:
-        plan.row += 1 if motion.vy > 0.0 else -1
-    enter(world, slot)
-    predict(world, slot, plan.time, plan.time_low, False)
+    now, now_low = plan.time, plan.time_low
+    margin = next_margin(world, slot)
+    fit_here(world, slot, now, now_low, margin)
+    predict(world, slot, now, now_low, False)
+
+
+@kernel
+def _look(world: WorldView, slot: int) -> None:
+    """Let a body look again what it slides into, as it planned."""
+    plan = plans_of(world)[slot]
+    now, now_low = plan.time, plan.time_low
+    move_to(world, moving_of(world)[slot], now, now_low)
+    plan.rests = 0
+    predict(world, slot, now, now_low, False)
+
+
+@kernel
+def _is_sensed(world: WorldView, slot: int) -> bool:
+    """Return whether a body or the partner that it will meet is a sensor."""
+    traits = traits_of(world)
+    own, other = traits[moving_of(world)[slot]], traits[plans_of(world)[slot].partner]
+    return bool(own.sensor >= 0 or other.sensor >= 0)
+
+
+@kernel
+def _enter(world: WorldView, hits: Hits, count: int, world_index: int, slot: int) -> int:
+    """Let a body enter a sensor, or a sensor meet it; return how many events there are."""
+    plan = plans_of(world)[slot]
+    a, b = moving_of(world)[slot], plan.partner
+    now, now_low = plan.time, plan.time_low
+    normal_x, normal_y = plan.normal_x, plan.normal_y
+    if a > b:  # Either of the two may have planned it. No bit depends on which.
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
+    # If both move, both may have planned it: the second one finds it done.
+    if not is_inside(world, traits_of(world)[a], a, traits_of(world)[b], b):
+        count = enter_sensor(
+            world, hits, count, world_index, a, b, now, now_low, normal_x, normal_y
+        )
+    predict(world, slot, now, now_low, False)
+    return count
 
 
 @kernel
 def _meet(world: WorldView, hits: Hits, count: int, world_index: int, slot: int) -> int:
     """Let a body meet its partner, as it planned; return how many hits there are."""
     plan = plans_of(world)[slot]
-    a = moving_of(world)[slot]
-    b = plan.partner
+    a, b = moving_of(world)[slot], plan.partner
     now, now_low = plan.time, plan.time_low
     normal_x, normal_y = plan.normal_x, plan.normal_y
-    one, other = traits_of(world)[a], traits_of(world)[b]
-    if one.sensor >= 0 or other.sensor >= 0:
-        # If both move, both may have planned it: the second one finds it done.
-        if not is_inside(world, one, a, other, b):
-            count = enter_sensor(
-                world, hits, count, world_index, a, b, now, now_low, normal_x, normal_y
-            )
-        predict(world, slot, now, now_low, False)
-        return count
+    if a > b:  # Either of the two may have planned it. No bit depends on which.
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     count = leave_sensors(world, hits, count, world_index, a, now, now_low)
     count = leave_sensors(world, hits, count, world_index, b, now, now_low)
     for body in (a, b):
         if traits_of(world)[body].inverse_mass > 0.0:
             move_to(world, body, now, now_low)
-    impulse = bounce_pair(world, a, b, normal_x, normal_y)
-    x, y = contact_point(world, a, b, now, now_low, normal_x, normal_y)
-    count = write_event(
-        world, hits, count, world_index, HIT, now, a, b, normal_x, normal_y, x, y, impulse
-    )
-    _plan_after_hit(world, a, b, now, now_low)
+    vx, vy = velocity_of(world, traits_of(world)[a].slot)
+    other_vx, other_vy = velocity_of(world, traits_of(world)[b].slot)
+    approach = (vx - other_vx) * normal_x + (vy - other_vy) * normal_y
+    if approach > slowest_hit(world, a, b):
+        impulse = bounce_pair(world, a, b, normal_x, normal_y)
+        x, y = contact_point(world, a, b, now, now_low, normal_x, normal_y)
+        count = write_event(
+            world, hits, count, world_index, HIT, now, a, b, normal_x, normal_y, x, y, impulse
+        )
+    is_short = is_short_way(world, a) and is_short_way(world, b)
+    # It also counts if it was no hit, so that a step always ends.
+    for body in (a, b):
+        if inverse_mass_of(world, body) > 0.0:
+            count_hit(world, traits_of(world)[body].slot, is_short)
+    plan_after_hit(world, a, b, now, now_low)
     return count
-
-
-@kernel
-def bounce_pair(world: WorldView, a: int, b: int, normal_x: float, normal_y: float) -> float:
-    """Exchange the momentum of two bodies along the normal from a to b; return the impulse."""
-    one = traits_of(world)[a]
-    other = traits_of(world)[b]
-    vx_a, vy_a = _velocity(world, one.slot)
-    vx_b, vy_b = _velocity(world, other.slot)
-    vx_a, vy_a, vx_b, vy_b, impulse = bounce_velocities(
-        vx_a,
-        vy_a,
-        vx_b,
-        vy_b,
-        one.inverse_mass,
-        other.inverse_mass,
-        normal_x,
-        normal_y,
-        _restitution(world, a, b),
-    )
-    if one.inverse_mass > 0.0:
-        motions_of(world)[one.slot].vx = vx_a
-        motions_of(world)[one.slot].vy = vy_a
-    if other.inverse_mass > 0.0:
-        motions_of(world)[other.slot].vx = vx_b
-        motions_of(world)[other.slot].vy = vy_b
-    return impulse
-
-
-@kernel
-def _velocity(world: WorldView, slot: int) -> tuple[float, float]:
-    """Return the velocity of the body with this slot; a static body (-1) has none."""
-    if slot < 0:
-        return 0.0, 0.0
-    return motions_of(world)[slot].vx, motions_of(world)[slot].vy
-
-
-@kernel
-def _restitution(world: WorldView, a: int, b: int) -> float:
-    """Return the restitution of a pair: its own, or the product of the bodies' values."""
-    low, high = min(a, b), max(a, b)
-    for index in range(overrides_of(world).shape[0]):
-        override = overrides_of(world)[index]
-        if override.a == low and override.b == high:
-            return float(override.restitution)
-    return float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
-
-
-@kernel
-def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
-    """Move a body to its position at a time within the step."""
-    slot = traits_of(world)[body].slot
-    if slot >= 0:
-        x, y, _, _ = motion_at(world, body, now, now_low)
-        motions_of(world)[slot].x = x
-        motions_of(world)[slot].y = y
-        plans_of(world)[slot].at = now
-        plans_of(world)[slot].at_low = now_low
-
-
-@kernel
-def _plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
-    """Make new plans for two bodies that have bounced, and for all that planned to meet them."""
-    traits = traits_of(world)
-    plans = plans_of(world)
-    stale = stale_of(world)
-    for body in (a, b):
-        trait = traits[body]
-        if trait.slot >= 0:
-            plans[trait.slot].kind = NOTHING
-        # A body of infinite mass keeps its course: plans to meet it still hold.
-        if trait.inverse_mass > 0.0:
-            plans[trait.slot].hits += 1
-            if is_capped(world, trait.slot):
-                clock_of(world).capped += 1
-    count = 0
-    for body in (a, b):
-        if traits[body].inverse_mass > 0.0:
-            count = find_stale(world, traits[body].slot, count)
-    for body in (a, b):
-        if traits[body].slot >= 0:
-            predict(world, traits[body].slot, now, now_low, False)
-    for index in range(count):
-        predict(world, stale[index], now, now_low, False)

@@ -3,27 +3,34 @@
 The lecture on collisions in games has three parts: detection, relaxation, bounce.
 """
 
+import math
+
 from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..pairs.touching import touch_margins
-from ..tolerances import RELAX_ROUNDS
+from ..tolerances import RELAX_PAIRWISE, RELAX_REACH, RELAX_ROUNDS, RESOLVED
+from .courses import margins_of, motion_at, move_to
 from .events import enter_sensor, has_room, write_event
-from .grid import enter_all, find_near
-from .impacts import bounce_pair
-from .prediction import is_inside, motion_at
+from .lookup.boxes import first_margin, fit, follow
+from .lookup.neighbours import find_near, sort_items
+from .meetings.pair import bounce_pair
+from .meetings.solver import resolve
+from .meetings.touches import append, are_joined, clear_group
+from .prediction import is_inside
 from .records import HIT, Hits
 from .view import (
     WorldView,
+    boxes_of,
     clock_of,
     edges_of,
+    members_of,
     motions_of,
     moving_of,
     near_of,
-    plans_of,
     progress_of,
     shapes_of,
+    touches_of,
     traits_of,
 )
 
@@ -32,27 +39,151 @@ from .view import (
 def relax_overlaps(world: WorldView) -> bool:
     """Move overlapping bodies apart, pair by pair; return whether anything moved.
 
-    Moving one pair apart may push it into others. So this repeats until no pair overlaps, or, where
-    there is not enough room for all, for a limited number of rounds. The overlaps that remain are
-    noted in the progress as crowded, and the next step continues with them.
+    Moving one pair apart may push it into others: what was moved is fresh, too. So this repeats
+    until no fresh body overlaps another one, or, where there is not enough room for all, for a
+    limited number of rounds. Where it takes long, as for a light body between heavy ones, all pairs
+    are moved apart together now and then. The overlaps that remain are noted in the progress as
+    crowded, and the next step continues with them.
     """
-    has_moved = False
-    for _ in range(RELAX_ROUNDS):
-        is_done = True
-        for slot in range(plans_of(world).shape[0]):
-            body = moving_of(world)[slot]
-            for index in range(find_near(world, slot, True)):
-                other = near_of(world)[index]
-                found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
-                if found:
-                    _move_apart(world, body, other, normal_x, normal_y, depth)
-                    is_done = False
-        if is_done:
+    motions = motions_of(world)
+    has_moved, has_room_for_all = False, True
+    for number in range(RELAX_ROUNDS):
+        deepest = 0.0
+        for slot in range(motions.shape[0]):
+            if motions[slot].fresh:
+                deepest = max(deepest, _relax_body(world, slot))
+        if deepest == 0.0:
             return has_moved
         has_moved = True
-        enter_all(world)
+        if has_room_for_all and number % RELAX_PAIRWISE == RELAX_PAIRWISE - 1:
+            has_room_for_all = _relax_together(world, deepest)
     progress_of(world).crowded = 1
     return has_moved
+
+
+@kernel
+def _relax_together(world: WorldView, deepest: float) -> bool:
+    """Move fresh bodies out of all others by the shortest ways, weighted by mass.
+
+    To first order, it is a group whose touches lack the depths of their overlaps, see `solver`; an
+    overlap below 0 is a gap that may close. What turns on the way is left to the next rounds. If
+    there is no room for all, it returns False and moves nothing.
+
+    Args:
+        world: the world.
+        deepest: of the last overlaps. Only gaps that are not much wider matter.
+    """
+    clear_group(world)
+    motions, near = motions_of(world), near_of(world)
+    for slot in range(motions.shape[0]):
+        body = moving_of(world)[slot]
+        if not motions[slot].fresh or traits_of(world)[body].inverse_mass == 0.0:
+            continue
+        for index in range(_find_close(world, slot)):
+            _join_close(world, body, near[index], RELAX_REACH * deepest)
+    progress, members = progress_of(world), members_of(world)
+    if progress.touches < 2:
+        return True
+    if not resolve(world, RESOLVED):
+        return False
+    for index in range(progress.members):
+        member = members[index]
+        if member.inverse_mass > 0.0:
+            _begin_anew(world, member.body)
+            motion = motions_of(world)[traits_of(world)[member.body].slot]
+            motion.x += member.vx
+            motion.y += member.vy
+            _follow(world, member.body)
+    return True
+
+
+@kernel
+def _join_close(world: WorldView, a: int, b: int, reach: float) -> None:
+    """Join two bodies that overlap, or that are apart by no more than the reach."""
+    traits = traits_of(world)
+    if traits[a].sensor >= 0 or traits[b].sensor >= 0 or are_joined(world, a, b):
+        return
+    clock = clock_of(world)
+    found, normal_x, normal_y, depth, _, _ = _contact_within(
+        world, a, b, clock.time, clock.time_low, -reach
+    )
+    if not found or depth == math.inf:
+        return
+    if append(world, a, b, normal_x, normal_y, 0.0, depth):
+        touch = touches_of(world)[progress_of(world).touches - 1]
+        for place in (touch.one, touch.other):
+            if place >= 0:
+                member = members_of(world)[place]
+                member.old_vx = member.old_vy = member.vx = member.vy = 0.0
+
+
+@kernel
+def _relax_body(world: WorldView, slot: int) -> float:
+    """Move a fresh body out of others; return the depth of the deepest overlap."""
+    traits, motions, near = traits_of(world), motions_of(world), near_of(world)
+    body = moving_of(world)[slot]
+    deepest = 0.0
+    for index in range(_find_close(world, slot)):
+        other = near[index]
+        theirs = traits[other].slot
+        if 0 <= theirs < slot and motions[theirs].fresh:
+            continue  # it was its turn
+        found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
+        if found:
+            _begin_anew(world, body)
+            _begin_anew(world, other)
+            _move_apart(world, body, other, normal_x, normal_y, depth)
+            _follow(world, body)
+            _follow(world, other)
+            deepest = max(deepest, depth)
+    return deepest
+
+
+@kernel
+def _find_close(world: WorldView, slot: int) -> int:
+    """Write the bodies into ``near`` that are in a body's box now; return how many.
+
+    Unlike `find_near`, this does not depend on the boxes of others, and so not on history.
+    """
+    clock, shapes, near = clock_of(world), shapes_of(world), near_of(world)
+    box = boxes_of(world)[slot]
+    count = 0
+    for index in range(find_near(world, slot, False)):
+        other = near[index]
+        trait = traits_of(world)[other]
+        x, y, _, _ = motion_at(world, other, clock.time, clock.time_low)
+        shape = shapes[trait.collider]
+        if (
+            x + shape.lower_x <= box.upper_x
+            and x + shape.upper_x >= box.lower_x
+            and y + shape.lower_y <= box.upper_y
+            and y + shape.upper_y >= box.lower_y
+        ):
+            near[count] = other
+            count += 1
+    sort_items(near, count)
+    return count
+
+
+@kernel
+def _begin_anew(world: WorldView, body: int) -> None:
+    """Let a body with a mass begin a new course here and now, because it is moved."""
+    trait = traits_of(world)[body]
+    if trait.inverse_mass > 0.0:
+        move_to(world, body, clock_of(world).time, clock_of(world).time_low)
+        if not motions_of(world)[trait.slot].fresh:
+            motion = motions_of(world)[trait.slot]
+            motions_of(world)[trait.slot].fresh = 1
+            fit(world, trait.slot, motion.x, motion.y, first_margin(world, trait.slot))
+
+
+@kernel
+def _follow(world: WorldView, body: int) -> None:
+    """Let the box of a body follow it, if it was moved."""
+    trait = traits_of(world)[body]
+    if trait.inverse_mass > 0.0:
+        motion = motions_of(world)[trait.slot]
+        follow(world, trait.slot, motion.x, motion.y)
 
 
 @kernel
@@ -72,13 +203,21 @@ def _contact_at(
     world: WorldView, a: int, b: int, now: float, now_low: float
 ) -> tuple[bool, float, float, float, float, float]:
     """Return the contact of two bodies at a time, with the point in the world's coordinates."""
+    return _contact_within(world, a, b, now, now_low, 0.0)
+
+
+@kernel
+def _contact_within(
+    world: WorldView, a: int, b: int, now: float, now_low: float, least: float
+) -> tuple[bool, float, float, float, float, float]:
+    """Return the same of two bodies that overlap by more than a depth; below 0 it is a gap."""
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
-    shapes, edges = shapes_of(world), edges_of(world)
     first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
-    margin_x, margin_y = touch_margins(shapes, edges, first, second, ax, ay, bx, by)
+    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
+    margin_x, margin_y = margin_x + least, margin_y + least
     found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes, edges, first, second, bx - ax, by - ay, margin_x, margin_y
+        shapes_of(world), edges_of(world), first, second, bx - ax, by - ay, margin_x, margin_y
     )
     return found, normal_x, normal_y, depth, ax + x, ay + y
 
@@ -109,9 +248,10 @@ def resolve_overlaps(world: WorldView, hits: Hits, count: int, world_index: int)
     a thin one. It stops early if there is no room for more hits, and can be called again.
     """
     progress = progress_of(world)
-    while progress.next_slot < plans_of(world).shape[0]:
+    while progress.next_slot < motions_of(world).shape[0]:
         body = moving_of(world)[progress.next_slot]
         near = find_near(world, progress.next_slot, True)
+        sort_items(near_of(world), near)
         while progress.next_near < near:
             if not has_room(world, hits, count):
                 return count

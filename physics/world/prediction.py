@@ -7,20 +7,22 @@ systems, J. Comput. Phys. 94, 1991). A plan holds until one of its two bodies ch
 import math
 
 from ..kernels import kernel
-from ..pairs.table import impact_between, may_touch
-from ..pairs.touching import margin_along, touch_margins
-from ..pairs.touching_point import shared_stretch
-from ..shapes.records import Edges, ShapeRecord
-from ..tolerances import FLATTEST, NO_APPROACH, TOUCH
-from .clock_time import elapsed, later
-from .grid import find_near, time_to_cross
-from .records import CROSS_X, CROSS_Y, MEET, NOTHING, PlanRecord, TraitRecord
+from ..pairs.touching import margin_along
+from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
+from .clock_time import elapsed, is_earlier, later
+from .courses import margins_of, motion_at, place_at, short_way
+from .lookup.boxes import time_to_leave
+from .lookup.inside import find_inside
+from .lookup.neighbours import find_near, has_list
+from .lookup.tree import NO_ONE
+from .meetings.impact import impact_of, may_meet
+from .meetings.passing import has_reached, passes_by
+from .meetings.ties import is_straighter
+from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
-    edges_of,
-    header_of,
-    inside_of,
+    list_of,
     motions_of,
     moving_of,
     near_of,
@@ -32,137 +34,22 @@ from .view import (
     winners_of,
 )
 
-
-@kernel
-def is_capped(world: WorldView, slot: int) -> bool:
-    """Return whether a body has used up its hits of this step, and so stays where it is."""
-    return bool(slot >= 0 and plans_of(world)[slot].hits >= header_of(world).max_hits)
-
-
-@kernel
-def motion_at(
-    world: WorldView, body: int, now: float, now_low: float
-) -> tuple[float, float, float, float]:
-    """Return (x, y, vx, vy) of a body at a time within the step."""
-    trait = traits_of(world)[body]
-    if trait.slot < 0:
-        return trait.home_x, trait.home_y, 0.0, 0.0
-    motion = motions_of(world)[trait.slot]
-    plan = plans_of(world)[trait.slot]
-    since = 0.0 if is_capped(world, trait.slot) else elapsed(now, now_low, plan.at, plan.at_low)
-    return motion.x + motion.vx * since, motion.y + motion.vy * since, motion.vx, motion.vy
+# What is far from meeting a body is sorted out with this room, a fraction of the coordinates, and
+# the same fraction of the time.
+SPARE = 1e-9
+# A body that reaches a static one at the flattest angle may slide this fraction of the coordinates
+# until rounding no longer hides whether they touch, see `_meeting`.
+FLAT_WAY = 2.0 * TOUCH / FLATTEST
 
 
 @kernel
 def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
     """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
-    bodies = traits_of(world).shape[0]
     if one.sensor >= 0:
-        return bool(inside_of(world)[one.sensor * bodies + b])
+        return find_inside(world, a, b) != NO_ONE
     if other.sensor >= 0:
-        return bool(inside_of(world)[other.sensor * bodies + a])
+        return find_inside(world, b, a) != NO_ONE
     return False
-
-
-@kernel
-def _approaches(vx: float, vy: float, normal_x: float, normal_y: float, speed: float) -> bool:
-    """Return whether two bodies that touch or overlap, perhaps only by rounding, have to bounce.
-
-    Args:
-        vx, vy: velocity of the second body, to which the normal points, relative to the first.
-        normal_x, normal_y: the normal.
-        speed: the sum of both bodies' speeds, on which the rounding of the velocity depends.
-    """
-    return bool(-(vx * normal_x + vy * normal_y) > NO_APPROACH * speed)
-
-
-@kernel
-def _skewness(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
-    """Return the sine of the angle between the unit vector (x, y) and the nearest edge's normal."""
-    least = 1.0
-    for index in range(shape.first, shape.first + shape.count):
-        edge = edges[index]
-        least = min(least, abs(edge.normal_x * y - edge.normal_y * x))
-    return least
-
-
-@kernel
-def _facing_length(
-    world: WorldView,
-    a: int,
-    b: int,
-    now: float,
-    now_low: float,
-    ahead: float,
-    normal_x: float,
-    normal_y: float,
-) -> float:
-    """Return along which length two bodies face each other some time ahead, when they meet."""
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    x, y, vx, vy = motion_at(world, a, now, now_low)
-    their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
-    dx = (their_x - x) + (their_vx - vx) * ahead
-    dy = (their_y - y) + (their_vy - vy) * ahead
-    one, other = traits[a].collider, traits[b].collider
-    _, low, high = shared_stretch(shapes, edges, one, other, dx, dy, normal_x, normal_y)
-    return high - low
-
-
-@kernel
-def _is_at_once(
-    world: WorldView,
-    plan: PlanRecord,
-    trait: TraitRecord,
-    time: float,
-    best: float,
-    ux: float,
-    uy: float,
-    normal_x: float,
-    normal_y: float,
-    margin: float,
-) -> bool:
-    """Return whether a body is met when the planned partner is, as far as rounding can tell.
-
-    So it is if the one that is met later, of two static bodies, is then touched already. It
-    approaches with (ux, uy).
-    """
-    if time == best:
-        return True
-    if trait.slot >= 0 or traits_of(world)[plan.partner].slot >= 0:
-        return False
-    if time < best:
-        normal_x, normal_y = plan.normal_x, plan.normal_y
-    return bool(abs(time - best) * -(ux * normal_x + uy * normal_y) <= margin)
-
-
-@kernel
-def _is_straighter(
-    world: WorldView,
-    plan: PlanRecord,
-    body: int,
-    other: int,
-    now: float,
-    now_low: float,
-    ahead: float,
-    normal_x: float,
-    normal_y: float,
-) -> bool:
-    """Return whether a body is met more along a face than the partner that is planned.
-
-    This decides between two bodies that are met at the same time, within rounding, some time ahead.
-    A disc that lands on the seam of two boxes meets the face of one and not the corner of the
-    other. A box that lands there meets the one on which it lies, and not the other's side.
-    """
-    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
-    rank = _skewness(shapes[traits[other].collider], edges, normal_x, normal_y)
-    partner = shapes[traits[plan.partner].collider]
-    best_rank = _skewness(partner, edges, plan.normal_x, plan.normal_y)
-    if rank == best_rank:
-        rank = -_facing_length(world, body, other, now, now_low, ahead, normal_x, normal_y)
-        best_rank = -_facing_length(
-            world, body, plan.partner, now, now_low, ahead, plan.normal_x, plan.normal_y
-        )
-    return bool(rank < best_rank or (rank == best_rank and other < plan.partner))
 
 
 @kernel
@@ -176,107 +63,284 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
             consider this one).
     """
     plan = plans_of(world)[slot]
-    plan.kind = NOTHING
+    _forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
-    if not is_capped(world, slot):
-        _find_event(world, slot, now, now_low, only_later)
+    plan.slack = 0.0
+    plan.tied = 0
+    _find_event(world, slot, now, now_low, only_later)
+    body = moving_of(world)[slot]
+    partner = plan.partner if plan.kind == MEET else body
+    plan.pair = min(body, partner) * traits_of(world).shape[0] + max(body, partner)
+    if plan.kind == MEET:
+        _join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
-def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
-    """Set a body's plan to its first event, if there is one."""
+def _join_suitors(world: WorldView, slot: int) -> None:
+    """Put a body into the list of those that plan to meet its partner, if the partner moves."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    theirs = traits_of(world)[plan.partner].slot
+    if theirs < 0:
+        return
+    partner = plans[theirs]
+    plan.previous_suitor = NO_ONE
+    plan.next_suitor = partner.suitor
+    if partner.suitor != NO_ONE:
+        plans[partner.suitor].previous_suitor = slot
+    partner.suitor = slot
+
+
+@kernel
+def _forget_partner(world: WorldView, slot: int) -> None:
+    """Let a body plan nothing, and take it out of the list in which it is."""
+    plans = plans_of(world)
+    plan = plans[slot]
+    if plan.kind == MEET:
+        theirs = traits_of(world)[plan.partner].slot
+        if theirs >= 0:
+            if plan.next_suitor != NO_ONE:
+                plans[plan.next_suitor].previous_suitor = plan.previous_suitor
+            if plan.previous_suitor != NO_ONE:
+                plans[plan.previous_suitor].next_suitor = plan.next_suitor
+            else:
+                plans[theirs].suitor = plan.next_suitor
+    plan.kind = NOTHING
+
+
+@kernel
+def _meeting(
+    world: WorldView,
+    slot: int,
+    other: int,
+    since: float,
+    since_low: float,
+    best: float,
+    best_low: float,
+) -> tuple[float, float, float, float]:
+    """Return (duration, normal_x, normal_y, slack) of when two bodies meet, seen from a time.
+
+    The duration is inf if they don't meet before the time ``best``, or so soon after it that
+    rounding decides. Bodies that touch or overlap meet only if they have to bounce. For so much as
+    the slack before they meet, they touch already.
+    """
+    motions = motions_of(world)
+    body = moving_of(world)[slot]
+    own, trait = traits_of(world)[body], traits_of(world)[other]
+    motion, plan = motions[slot], plans_of(world)[slot]
+    x, y = place_at(motion, since, since_low)
+    their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
+    late = plan.slack
+    if trait.slot >= 0:
+        theirs = motions[trait.slot]
+        their_x, their_y = place_at(theirs, since, since_low)
+        ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
+    dx, dy = their_x - x, their_y - y
+    if trait.slot < 0 and ux * ux + uy * uy > 0.0:
+        coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
+        late = max(late, TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy)))
+    left = elapsed(best, best_low, since, since_low) + late
+    if not may_meet(world, body, other, dx, dy, ux, uy, left):
+        return math.inf, 0.0, 0.0, 0.0
+    margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
+    time, normal_x, normal_y = impact_of(
+        world, body, other, dx, dy, ux, uy, left, margin_x, margin_y
+    )
+    if time == math.inf:
+        return math.inf, 0.0, 0.0, 0.0
+    closing = -(ux * normal_x + uy * normal_y)
+    margin = margin_along(normal_x, normal_y, margin_x, margin_y)
+    if own.sensor < 0 and trait.sensor < 0:
+        if progress_of(world).inert and has_reached(world, body, other, HELD):
+            # So every meeting has a body that it brings closer to being held.
+            return math.inf, 0.0, 0.0, 0.0
+        if time == 0.0:
+            progress_of(world).touching = 1
+        if time * closing <= margin and passes_by(world, body, other, closing):
+            return math.inf, 0.0, 0.0, 0.0
+    return time, normal_x, normal_y, margin / closing if closing > 0.0 else 0.0
+
+
+@kernel
+def _may_meet(
+    world: WorldView,
+    slot: int,
+    trait: TraitRecord,
+    x: float,
+    y: float,
+    now: float,
+    now_low: float,
+    left: float,
+) -> bool:
+    """Return False only if the bounding boxes of two bodies stay apart.
+
+    This sorts out most bodies around at a low cost. It leaves more room than rounding takes, so
+    that it has no influence on any bit.
+
+    Args:
+        world, slot: the first body, which moves; x, y: where it is now.
+        trait: of the other body.
+        now, now_low: the time; left: how much time is left until something else happens.
+    """
+    if left == math.inf:
+        return True
+    motion = motions_of(world)[slot]
+    their_x, their_y, ux, uy = trait.home_x, trait.home_y, -motion.vx, -motion.vy
+    # All numbers from which the places were computed, or half of one.
+    far, way = abs(motion.x) + abs(motion.y) + abs(x) + abs(y), 0.0
+    if trait.slot >= 0:
+        theirs = motions_of(world)[trait.slot]
+        their_x, their_y = place_at(theirs, now, now_low)
+        ux, uy = theirs.vx - motion.vx, theirs.vy - motion.vy
+        far += abs(theirs.x) + abs(theirs.y)
+    else:
+        way = FLAT_WAY * (far + abs(their_x) + abs(their_y))
+    dx, dy = their_x - x, their_y - y
+    room = SPARE * (far + abs(their_x) + abs(their_y))
     shapes = shapes_of(world)
-    edges = edges_of(world)
-    traits = traits_of(world)
-    near = near_of(world)
-    plan = plans_of(world)[slot]
+    one, other = shapes[traits_of(world)[moving_of(world)[slot]].collider], shapes[trait.collider]
+    left_x, right_x = (
+        dx + other.lower_x - one.upper_x - room,
+        dx + other.upper_x - one.lower_x + room,
+    )
+    left_y, right_y = (
+        dy + other.lower_y - one.upper_y - room,
+        dy + other.upper_y - one.lower_y + room,
+    )
+    way_x, way_y = ux * left, uy * left
+    # An interval of distances that stays on one side of 0, on either axis. Without branches, which
+    # a processor could not foresee.
+    return not (
+        ((left_x > 0.0) & (left_x + way_x > way))
+        | ((right_x < 0.0) & (right_x + way_x < -way))
+        | ((left_y > 0.0) & (left_y + way_y > way))
+        | ((right_y < 0.0) & (right_y + way_y < -way))
+    )
+
+
+@kernel
+def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_later: bool) -> None:
+    """Set a body's plan to its first event, if there is one.
+
+    A pair's time of impact is computed from when both bodies began their courses, whenever that is.
+    So nothing but the two courses has an influence on it: no bit depends on the broad phase, or on
+    the length of steps.
+    """
+    traits, motions = traits_of(world), motions_of(world)
+    plan, motion = plans_of(world)[slot], motions[slot]
     body = moving_of(world)[slot]
     own = traits[body]
+    if not only_later and has_list(world, slot):
+        count, near = plan.near, list_of(world, slot)
+    else:
+        count, near = find_near(world, slot, only_later), near_of(world)
     x, y, vx, vy = motion_at(world, body, now, now_low)
-    best = math.inf if own.roams else _find_crossing(world, plan, x, y, vx, vy)
-    for index in range(find_near(world, slot, only_later)):
+    best, best_low = _plan_alone(world, slot, x, y, vx, vy, now, now_low)
+    left = elapsed(best, best_low, now, now_low)
+    for index in range(count):
         other = near[index]
         trait = traits[other]
-        their_x, their_y, their_vx, their_vy = motion_at(world, other, now, now_low)
-        dx, dy, ux, uy = their_x - x, their_y - y, their_vx - vx, their_vy - vy
-        slack = 0.0
-        if trait.slot < 0 and ux * ux + uy * uy > 0.0:
-            coordinates = abs(x) + abs(y) + abs(dx) + abs(dy)
-            slack = TOUCH * coordinates / (FLATTEST * math.sqrt(ux * ux + uy * uy))
-        if not may_touch(shapes, own.collider, trait.collider, dx, dy, ux, uy, best + slack):
+        if not _may_meet(world, slot, trait, x, y, now, now_low, left):
             continue
-        if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
-            continue
-        margin_x, margin_y = touch_margins(
-            shapes, edges, own.collider, trait.collider, x, y, their_x, their_y
+        since, since_low = motion.at, motion.at_low
+        if trait.slot >= 0:
+            theirs = motions[trait.slot]
+            if is_earlier(since, since_low, theirs.at, theirs.at_low):
+                since, since_low = theirs.at, theirs.at_low
+        time, normal_x, normal_y, slack = _meeting(
+            world, slot, other, since, since_low, best, best_low
         )
-        time, normal_x, normal_y = impact_between(
-            shapes,
-            edges,
-            own.collider,
-            trait.collider,
-            dx,
-            dy,
-            ux,
-            uy,
-            best + slack,
-            margin_x,
-            margin_y,
-        )
-        if time == math.inf:
+        if time == math.inf or is_inside(world, own, body, trait, other):
             continue
-        if time == 0.0 and own.sensor < 0 and trait.sensor < 0:
-            progress_of(world).touching = 1
-            speed = abs(vx) + abs(vy) + abs(their_vx) + abs(their_vy)
-            if not _approaches(ux, uy, normal_x, normal_y, speed):
-                continue
-        margin = margin_along(normal_x, normal_y, margin_x, margin_y)
-        if plan.kind == MEET and _is_at_once(
-            world, plan, trait, time, best, ux, uy, normal_x, normal_y, margin
-        ):
-            is_first = _is_straighter(
-                world, plan, body, other, now, now_low, best, normal_x, normal_y
+        begin, begin_low = later(since, since_low, time)
+        if is_earlier(begin, begin_low, now, now_low):
+            # That meeting is over: the body has left the sensor, for instance.
+            time, normal_x, normal_y, slack = _meeting(
+                world, slot, other, now, now_low, best, best_low
             )
+            if time == math.inf:
+                continue
+            begin, begin_low = later(now, now_low, time)
+        wait = elapsed(begin, begin_low, best, best_low)
+        # At the same time as the best so far: then the later one is touched already.
+        is_tied = plan.kind == MEET and -plan.slack <= wait <= slack
+        are_static = trait.slot < 0 and traits[plan.partner].slot < 0
+        if is_tied and (wait == 0.0 or are_static):
+            is_first = is_straighter(
+                world,
+                body,
+                other,
+                normal_x,
+                normal_y,
+                plan.partner,
+                plan.normal_x,
+                plan.normal_y,
+                best,
+                best_low,
+            )
+            # It is met at the first of the two times: until the other, the body might sink in.
+            if wait > 0.0:
+                begin, begin_low, slack = best, best_low, slack - wait
+            else:
+                best, best_low = begin, begin_low
+                plan.slack += wait
         else:
-            # At the same time, a meeting comes before a crossing.
-            is_first = time < best or (time == best and plan.kind != MEET)
+            # At the same time, a meeting comes before what a body does alone.
+            is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)
+        if is_tied:
+            plan.tied = 1
+        elif is_first:
+            plan.tied = 0
         if is_first:
-            best = time
+            best, best_low = begin, begin_low
             plan.kind = MEET
             plan.partner = other
             plan.normal_x = normal_x
             plan.normal_y = normal_y
+            plan.slack = slack
+            left = elapsed(best, best_low, now, now_low) * (1.0 + SPARE) + slack
     if plan.kind != NOTHING:
-        plan.time, plan.time_low = later(now, now_low, best)
+        plan.time, plan.time_low = best, best_low
 
 
 @kernel
-def _find_crossing(
-    world: WorldView, plan: PlanRecord, x: float, y: float, vx: float, vy: float
-) -> float:
-    """Plan to leave the cell, if the body does; return in how long."""
-    header = header_of(world)
-    time_x = time_to_cross(x, vx, header.left, header.cell, plan.column, header.columns)
-    time_y = time_to_cross(y, vy, header.bottom, header.cell, plan.row, header.rows)
-    time = min(time_x, time_y)
-    if time < math.inf:
-        plan.kind = CROSS_X if time_x <= time_y else CROSS_Y
-    return time
+def _plan_alone(
+    world: WorldView,
+    slot: int,
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    now: float,
+    now_low: float,
+) -> tuple[float, float]:
+    """Plan what a body does alone: to leave its box, or to look again what it slides into.
+
+    It is at (x, y) with the velocity (vx, vy). This returns when, as a time in two numbers.
+    """
+    plan = plans_of(world)[slot]
+    duration = time_to_leave(plan, x, y, vx, vy)
+    if duration < math.inf:
+        plan.kind = LEAVE
+    if plan.rests >= MOST_RESTS:
+        way, speed = short_way(world, moving_of(world)[slot]), abs(vx) + abs(vy)
+        if speed > 0.0 and way < duration * speed:
+            plan.kind = LOOK
+            duration = way / speed
+    if plan.kind == NOTHING:
+        return math.inf, 0.0
+    return later(now, now_low, duration)
 
 
 @kernel
 def find_stale(world: WorldView, slot: int, count: int) -> int:
-    """Append the bodies to ``stale`` that planned to meet one whose course has changed."""
-    body = moving_of(world)[slot]
-    for index in range(find_near(world, slot, False)):
-        other = traits_of(world)[near_of(world)[index]].slot
-        if other < 0:
-            continue
-        plan = plans_of(world)[other]
-        if plan.kind == MEET and plan.partner == body:
-            plan.kind = NOTHING
-            stale_of(world)[count] = other
-            count += 1
+    """Append the bodies to ``stale`` that plan to meet one whose course has changed."""
+    plans, stale = plans_of(world), stale_of(world)
+    suitor = plans[slot].suitor
+    while suitor != NO_ONE:
+        stale[count] = suitor
+        count += 1
+        suitor = plans[suitor].next_suitor
     return count

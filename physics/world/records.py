@@ -1,13 +1,13 @@
 """The data of a simulation: bodies, what they are about to do, and what happened to them.
 
-Two blocks of memory hold a world. Each is one array of bytes, so that a kernel call costs little
-and a snapshot is a copy:
+Three blocks of memory hold a world. Each is one array of bytes, so that a kernel call costs little:
 
-- its *state*, which changes: `Clock`, the `Motion` of every moving body, the `Plan` of each with
-  the order of these plans in time, and which bodies are inside which sensor. A batch is a matrix
-  with one such row per world.
+- its *state*, which changes: `Clock`, the `Course` of every moving body, the `Plan` of each with
+  the order of these plans in time, and the grid of their boxes. A batch is a matrix with one such
+  row per world.
+- which bodies are *inside* which sensor, see `lookup.inside`: it grows with what is inside.
 - the *workspace* in which it is stepped: what does not change (`Header`, the bodies' `Trait`
-  records, shapes, the grid of static bodies) and scratch memory. The worlds of a batch share one
+  records, shapes, the tree of static bodies) and scratch memory. The worlds of a batch share one
   workspace, one after the other; each thread has a copy.
 """
 
@@ -26,17 +26,24 @@ END = 2
 
 # What a body plans (`Plan.kind`).
 NOTHING = 0  # to move straight on until the step ends
-CROSS_X = 1  # to cross the border to the next column of the grid
-CROSS_Y = 2  # the same, to the next row
-MEET = 3  # to meet its partner
+LEAVE = 1  # to leave its box
+MEET = 2  # to meet its partner
+LOOK = 3  # to look again what it slides into
+
+# What a body's hits of this step have made of it (`Plan.stage`).
+FREE = 0  # it bounces
+INERT = 1  # it has used up `max_hits`: it bounces no more
+CRUSHED = 2  # it has no room: what touches it moves into it
+HELD = 3  # it has used up as many again: it stays where it is, as if it had no mass
 
 # Times are sums of two numbers, of which the second is small: see `clock_time`.
 Clock = record_dtype(
     [
         ("time", np.float64),  # simulated so far
         ("time_low", np.float64),
-        ("capped", np.int64),  # how often a body used up its hits of a step
-        ("planned", np.int64),  # 1: the plans hold, if all motions are as the last step left them
+        ("capped", np.int64),  # how often a body used up its hits of a step, or had no room
+        ("planned", np.int64),  # 1: the plans hold, but for fresh bodies and those that users moved
+        ("fresh", np.int64),  # 1: there are fresh bodies, see `Course`
     ]
 )
 
@@ -46,6 +53,21 @@ Motion = record_dtype(
         ("y", np.float64),
         ("vx", np.float64),
         ("vy", np.float64),
+    ]
+)
+
+# The course of a moving body: where it was when it last changed its motion, and since when it has
+# flown straight on. 64 bytes, as a processor reads them.
+Course = record_dtype(
+    [
+        ("x", np.float64),
+        ("y", np.float64),
+        ("vx", np.float64),
+        ("vy", np.float64),
+        ("at", np.float64),  # when it was there
+        ("at_low", np.float64),
+        ("speed", np.float64),  # |vx| + |vy|, the most since a user last wrote it
+        ("fresh", np.int64),  # 1: its plan does not hold, and it may overlap others
     ]
 )
 
@@ -59,12 +81,12 @@ Trait = record_dtype(
         ("restitution", np.float64),
         ("category", np.int64),  # bits
         ("mask", np.int64),  # bits: the categories that it meets
-        ("sensor", np.int64),  # row in the table of who is inside; -1 for a solid body
-        ("roams", np.int64),  # 1: it moves and is too large for the grid
+        ("sensor", np.int64),  # its number; -1 for a solid body
+        ("boundless", np.int64),  # 1: it has no bounding box, and everything is tested against it
     ]
 )
 
-# A pair whose restitution is not the product of its bodies' values.
+# A pair whose restitution is not the product of its bodies' values; a = -1: no pair.
 Override = record_dtype([("a", np.int64), ("b", np.int64), ("restitution", np.float64)])
 
 Header = record_dtype(
@@ -72,13 +94,12 @@ Header = record_dtype(
         ("bodies", np.int64),
         ("movers", np.int64),  # bodies that move
         ("sensors", np.int64),
-        ("max_hits", np.int64),  # of one body in one step
+        ("max_hits", np.int64),  # of one body in one step, see `count_hit`
         ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
-        ("left", np.float64),  # of the grid
-        ("bottom", np.float64),
-        ("cell", np.float64),  # size
-        ("columns", np.int64),
-        ("rows", np.int64),
+        ("inelastic", np.int64),  # 1: some bodies do not bounce
+        ("typical", np.float64),  # length: the median of the bodies' sizes
+        ("cell", np.float64),  # size of the cells of the grid that suit a typical body
+        ("has_grid", np.int64),  # 0: so few bodies move that a grid of them is not worth it
         # Where each part of the workspace begins, in bytes, and its number of items where that is
         # none of the numbers above.
         ("traits_at", np.int64),
@@ -87,46 +108,138 @@ Header = record_dtype(
         ("edges_at", np.int64),
         ("edges", np.int64),
         ("moving_at", np.int64),
-        ("sensing_at", np.int64),
-        ("roaming_at", np.int64),
-        ("roaming", np.int64),
         ("boundless_at", np.int64),
         ("boundless", np.int64),
-        ("firsts_at", np.int64),
-        ("items_at", np.int64),
-        ("items", np.int64),
+        ("static_tree_at", np.int64),
+        ("static_nodes_at", np.int64),
+        ("static_nodes", np.int64),  # two per body, or none where no body is static
         ("overrides_at", np.int64),
         ("overrides", np.int64),
         ("progress_at", np.int64),
         ("near_at", np.int64),
+        ("found_at", np.int64),
         ("stale_at", np.int64),
-        # The same for the state, which begins with the clock and the motions.
-        ("motions_after_step_at", np.int64),
+        ("stack_at", np.int64),
+        ("places_at", np.int64),
+        ("members_at", np.int64),
+        ("members", np.int64),
+        ("touches_at", np.int64),
+        ("touches", np.int64),
+        # The same for the state, which begins with the clock and the motions that users see.
+        ("shown_after_step_at", np.int64),
+        ("motions_at", np.int64),
         ("plans_at", np.int64),
         ("winners_at", np.int64),
         ("leaves", np.int64),
+        ("boxes_at", np.int64),
+        ("links_at", np.int64),
+        ("grid_at", np.int64),
+        ("level_counts_at", np.int64),
         ("heads_at", np.int64),
-        ("heads", np.int64),  # one per cell, or none where few bodies move
-        ("inside_at", np.int64),
+        ("heads", np.int64),  # a power of two, or 0 without a grid
         ("state_size", np.int64),
     ]
 )
 
+# 192 bytes: what is used together is in one of three lines, as a processor reads them.
 Plan = record_dtype(
     [
         ("time", np.float64),  # when it happens
         ("time_low", np.float64),
-        ("at", np.float64),  # when the body was where its motion says
-        ("at_low", np.float64),
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
+        ("pair", np.int64),  # the two bodies as one number, whichever of them plans
+        # The slots of the bodies that plan to meet this one are a list; -1 where it ends.
+        ("suitor", np.int64),
+        ("next_suitor", np.int64),
+        ("previous_suitor", np.int64),
         ("normal_x", np.float64),  # from this body to its partner
         ("normal_y", np.float64),
-        ("hits", np.int64),  # in this step
-        ("column", np.int64),  # of the grid
+        ("slack", np.float64),  # what rounding may add to the time until it meets its partner
+        ("tied", np.int32),  # 1: it meets another body at the same time
+        ("nowhere", np.int32),  # 1: it went next to nowhere to its last hit
+        ("hits", np.int64),  # in this step, see `count_hit`; from 0 again at each later stage
+        ("rests", np.int64),  # how often it has come to rest since it went some way
+        ("instant", np.int64),  # hits at the time of its last one
+        ("stage", np.int64),  # FREE, INERT, CRUSHED or HELD
+        # Its box, see `lookup.boxes`: where it was made, when, and whether it is in the grid.
+        ("middle_x", np.float64),
+        ("middle_y", np.float64),
+        ("margin", np.float64),
+        ("fitted", np.float64),
+        ("near", np.int64),  # bodies that it may meet there; -1: too many for its list
+        ("fixed", np.int64),  # of these, how many are not found by the grid
+        ("is_linked", np.int64),
+        ("previous", np.int64),  # the slot before it in the list of its cell, or -1
+    ]
+)
+
+# A place in the tournament of plans: whose plan it is, and when.
+Seat = record_dtype([("time", np.float64), ("slot", np.int64)])
+
+# Where a body may be before it leaves its box, with the body's extent; and its place in the grid.
+# 64 bytes, as a processor reads them.
+Box = record_dtype(
+    [
+        ("lower_x", np.float64),
+        ("lower_y", np.float64),
+        ("upper_x", np.float64),
+        ("upper_y", np.float64),
+        ("level", np.int64),
+        ("column", np.int64),
         ("row", np.int64),
-        ("next", np.int64),  # slots of the neighbours in its cell's list, or -1
-        ("previous", np.int64),
+        ("next", np.int64),  # the next slot in the list of its cell, or -1
+    ]
+)
+
+# The grid: the first and the last level that has bodies.
+Grid = record_dtype(
+    [
+        ("lowest", np.int64),
+        ("highest", np.int64),
+        ("ready", np.int64),  # 1: every body has a box
+    ]
+)
+
+# A node of a tree of boxes, see `lookup.tree`: 64 bytes, as a processor reads them.
+Node = record_dtype(
+    [
+        ("lower_x", np.float64),
+        ("lower_y", np.float64),
+        ("upper_x", np.float64),
+        ("upper_y", np.float64),
+        ("parent", np.int64),  # -1: the root; of an unused node, the next one of these
+        ("left", np.int64),  # -1: a leaf
+        ("right", np.int64),
+        ("height", np.int64),
+    ]
+)
+
+Tree = record_dtype([("root", np.int64), ("free", np.int64)])
+
+# How many pairs of a sensor and a body inside there are, and the first unused record of a pair.
+Inside = record_dtype([("count", np.int64), ("free", np.int64), ("room", np.int64)])
+
+Pair = record_dtype(
+    [
+        ("sensor", np.int64),  # -1: unused
+        ("body", np.int64),
+        ("next", np.int64),  # in the body's list; of an unused pair, the next one of these
+    ]
+)
+
+# A ray, or the way of a shape, and what it meets first.
+Ray = record_dtype(
+    [
+        ("x", np.float64),  # its start
+        ("y", np.float64),
+        ("way_x", np.float64),  # to its end
+        ("way_y", np.float64),
+        ("room", np.float64),  # how far beside it bodies are met
+        ("body", np.int64),  # -1: none
+        ("fraction", np.float64),  # of the way
+        ("normal_x", np.float64),  # to the body
+        ("normal_y", np.float64),
     ]
 )
 
@@ -143,6 +256,53 @@ Progress = record_dtype(
         ("full", np.int64),  # 1: there was no room for another hit
         ("touching", np.int64),  # 1: two bodies overlap or touch
         ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
+        ("hits", np.int64),  # of all bodies in this step
+        ("inert", np.int64),  # 1: for a body, the hits before decide how it bounces
+        ("members", np.int64),  # of the group that is resolved
+        ("touches", np.int64),  # between them
+        ("elastic", np.int64),  # 1: one of these bounces
+        ("receding", np.int64),  # 1: the bodies of one receded at first
+    ]
+)
+
+# A moving body of a group that is resolved together, while that lasts.
+Member = record_dtype(
+    [
+        ("body", np.int64),
+        ("inverse_mass", np.float64),
+        ("old_vx", np.float64),  # before
+        ("old_vy", np.float64),
+        ("vx", np.float64),  # after, as far as it is known
+        ("vy", np.float64),
+        ("seen_vx", np.float64),  # when its neighbours were last tested
+        ("seen_vy", np.float64),
+        ("seen", np.int64),  # 1: they have been
+        ("turn_x", np.float64),  # how a step along the course changes its velocity, see `solver`
+        ("turn_y", np.float64),
+        ("met", np.int64),  # touches, and then hits
+        ("rests", np.int64),  # 1: some are inelastic
+    ]
+)
+
+# Two bodies of a group that touch and must not approach each other any more.
+Touch = record_dtype(
+    [
+        ("one", np.int64),  # a member
+        ("other", np.int64),  # a member, or -1 for a static body
+        ("a", np.int64),  # their bodies
+        ("b", np.int64),
+        ("normal_x", np.float64),  # from a to b
+        ("normal_y", np.float64),
+        ("share_a", np.float64),  # of what an impulse changes of their relative speed
+        ("share_b", np.float64),
+        ("restitution", np.float64),
+        ("aim", np.float64),  # the speed at which they have to recede
+        ("change", np.float64),  # of their relative speed, by the impulse
+        # See `solver`.
+        ("weight", np.float64),  # the mass that the two have for an impulse; the most is 1
+        ("slope", np.float64),
+        ("course", np.float64),
+        ("bend", np.float64),
     ]
 )
 
@@ -163,17 +323,27 @@ Hit = record_dtype(
 Block: TypeAlias = Any  # uint8 [bytes]
 Blocks: TypeAlias = Any  # uint8 [worlds, bytes]
 Indices: TypeAlias = Any  # int64 [n]
-Flags: TypeAlias = Any  # uint8 [n]
-Boxes: TypeAlias = Any  # float64 [n, 4]: lower x, lower y, upper x, upper y
-Box: TypeAlias = Any  # float64 [4], one of them
 ClockRecord: TypeAlias = Any  # one `Clock`
+CourseRecord: TypeAlias = Any  # one `Course`
+Courses: TypeAlias = Any  # `Course` [movers]
 Motions: TypeAlias = Any  # `Motion` [movers]
 TraitRecord: TypeAlias = Any  # one `Trait`
 Traits: TypeAlias = Any  # `Trait` [bodies]
 Overrides: TypeAlias = Any  # `Override` [pairs]
+Seats: TypeAlias = Any  # `Seat` [2 * leaves]
 HeaderRecord: TypeAlias = Any  # one `Header`
-Headers: TypeAlias = Any  # `Header` [1]
+BoxRecord: TypeAlias = Any  # one `Box`
+Boxes: TypeAlias = Any  # `Box` [n]
+GridRecord: TypeAlias = Any  # one `Grid`
+RayRecord: TypeAlias = Any  # one `Ray`
+Nodes: TypeAlias = Any  # `Node` [n]
+TreeRecord: TypeAlias = Any  # one `Tree`
+InsideRecord: TypeAlias = Any  # one `Inside`
+Pairs: TypeAlias = Any  # `Pair` [room]
 PlanRecord: TypeAlias = Any  # one `Plan`
 Plans: TypeAlias = Any  # `Plan` [movers]
 ProgressRecord: TypeAlias = Any  # one `Progress`
+Members: TypeAlias = Any  # `Member` [room]
+Touches: TypeAlias = Any  # `Touch` [room]
+TouchRecord: TypeAlias = Any  # one `Touch`
 Hits: TypeAlias = Any  # `Hit` [room]

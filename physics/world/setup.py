@@ -1,4 +1,4 @@
-"""From bodies to the workspace that steps them: traits, shapes, and the grid of static bodies."""
+"""From bodies to the workspace that steps them: traits, shapes, and the tree of static bodies."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,28 +10,41 @@ import numpy.typing as npt
 
 from ..arguments import inverse_mass
 from ..body import FloatArray
+from ..kernels.layouts import aligned_bytes, in_lines
 from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
-from .grid import NO_ONE, count_cells, fill_cells
-from .records import Header, Motion, Override, Plan, Progress, Trait
+from .lookup.boxes import enter_static, typical_width
+from .lookup.grid import SPARE
+from .lookup.overrides import override_table
+from .lookup.tree import NO_ONE
+from .records import (
+    Box,
+    Course,
+    Grid,
+    Header,
+    Member,
+    Motion,
+    Node,
+    Plan,
+    Progress,
+    Seat,
+    Touch,
+    Trait,
+    Tree,
+)
 from .tournament import leaf_count
-from .view import CLOCK_SIZE
+from .view import CLOCK_SIZE, LEVELS, LINKS, STACK
 
 ByteArray = npt.NDArray[np.uint8]
 
-# Cells per body. More of them are crossed more often, fewer hold more neighbours each.
-CELLS_PER_MOVING = 2.0
-CELLS_PER_STATIC = 0.5
-# With so few bodies there is only one cell; with so few moving ones, no lists of them.
-FEW_BODIES = 8
-# A moving body that is so many times larger than the median roams. A static body in more than this
-# share of all cells is tested everywhere instead.
-LARGE = 8.0
-MANY_CELLS = 0.25
-# Cells are larger than the largest body by this fraction, because of rounding.
-MARGIN = 1e-6
+# With so few moving bodies there is no grid of them.
+FEW_MOVING = 8
+# Bodies that can be resolved together, and touches of each of them that there is room for. Of a
+# larger group, the rest is resolved after the first part.
+LARGEST_GROUP = 512
+TOUCHES = 4
 
 
 @dataclass(frozen=True)
@@ -67,7 +80,7 @@ class Setup:
 
     def new_state(self, num_worlds: int) -> ByteArray:
         """Return zeroed states, uint8 [num_worlds, bytes]."""
-        return np.zeros((num_worlds, self.header.state_size), np.uint8)
+        return aligned_bytes(num_worlds, int(self.header.state_size))
 
     @property
     def header(self) -> Any:
@@ -75,24 +88,25 @@ class Setup:
         return self.workspace[: Header.itemsize].view(Header)[0]
 
     def motion_view(self, states: ByteArray) -> FloatArray:
-        """Return a view of the motions, float64 [num_worlds, movers, 4]: x, y, vx, vy."""
-        part: FloatArray = states[:, CLOCK_SIZE : self.header.motions_after_step_at].view(
-            np.float64
-        )
+        """Return a view of the motions, float64 [num_worlds, movers, 4]: x, y, vx, vy.
+
+        They are those that users see and may write between two steps.
+        """
+        end = CLOCK_SIZE + Motion.itemsize * len(self.moving)
+        part: FloatArray = states[:, CLOCK_SIZE:end].view(np.float64)
         return part.reshape(len(states), len(self.moving), 4)
 
-    def motions_after_step_view(self, states: ByteArray) -> FloatArray:
-        """Return a view of the motions after the last step, as from `motion_view`."""
-        part: FloatArray = states[:, self.header.motions_after_step_at : self.header.plans_at].view(
-            np.float64
-        )
-        return part.reshape(len(states), len(self.moving), 4)
+    def records(self, states: ByteArray, name: str, dtype: Any) -> npt.NDArray[Any]:
+        """Return a view of records of the moving bodies, [num_worlds, movers].
 
-    def inside_view(self, states: ByteArray) -> ByteArray:
-        """Return a view of which bodies are inside, uint8 [num_worlds, sensors, bodies]."""
-        size = len(self.sensing) * len(self.traits)
-        part = states[:, self.header.inside_at : self.header.inside_at + size]
-        return part.reshape(len(states), len(self.sensing), len(self.traits))
+        Args:
+            states: uint8 [num_worlds, bytes].
+            name: of the part, as in the header: "shown_after_step", "motions" or "plans".
+            dtype: of the records.
+        """
+        start = int(self.header[f"{name}_at"])
+        size = dtype.itemsize * len(self.moving)
+        return states[:, start : start + size].view(dtype)
 
 
 def build_setup(
@@ -131,38 +145,52 @@ def build_setup(
     traits["slot"] = NO_ONE
     traits["slot"][moving] = np.arange(len(moving))
     traits["sensor"][sensing] = np.arange(len(sensing))
-
     own = shapes[traits["collider"]]
-    boxes = np.column_stack([own[name] for name in ("lower_x", "lower_y", "upper_x", "upper_y")])
-    reach = np.abs(boxes).max(axis=1, initial=0.0)
-    traits["roams"] = moves & _is_large(reach, moves)
-    resident = moves & (traits["roams"] == 0)
-    boxes += np.tile(positions, 2)
+    sizes = np.abs([own[name] for name in ("lower_x", "lower_y", "upper_x", "upper_y")]).max(axis=0)
+    traits["boundless"] = ~_have_bounds(sizes)
     header = np.zeros(1, Header)
     header["max_hits"], header["continuous"] = max_hits, continuous
-    static = np.flatnonzero(~moves)
-    boundless, firsts, entered = _make_grid(header, boxes, static, reach, resident, positions)
-    pairs = np.array([(*pair, e) for pair, e in sorted(overrides.items())], Override)
+    header["inelastic"] = (traits["restitution"] == 0.0).any() or 0.0 in overrides.values()
+    header["typical"] = _typical(sizes[traits["boundless"] == 0])
+    header["cell"] = typical_width(header["typical"][0]) * (1.0 + 4.0 * SPARE)
+    header["has_grid"] = len(moving) > FEW_MOVING
     header["bodies"], header["movers"] = len(specs), len(moving)
     header["sensors"] = len(sensing)
-    _plan_state(header, cells=len(firsts) - 1)
+    _plan_state(header)
+    is_tree = ~moves & (traits["boundless"] == 0)
+    group = min(len(moving), LARGEST_GROUP)
     workspace = _pack(
         header,
         traits=traits,
         shapes=shapes,
         edges=edges,
         moving=moving,
-        sensing=sensing,
-        roaming=np.flatnonzero(traits["roams"]),
-        boundless=boundless,
-        firsts=firsts,
-        items=entered,
-        overrides=pairs,
+        boundless=np.flatnonzero(traits["boundless"]),
+        static_tree=np.zeros(1, Tree),
+        static_nodes=np.zeros(2 * len(specs) if is_tree.any() else 0, Node),
+        overrides=override_table(overrides),
         progress=np.zeros(1, Progress),
-        near=np.zeros(len(specs), np.int64),
+        near=np.zeros(len(specs) + 1, np.int64),
+        found=np.zeros(len(specs) + 1, np.int64),
         stale=np.zeros(len(moving), np.int64),
+        places=np.zeros(len(moving), np.int64),
+        members=np.zeros(group, Member),
+        touches=np.zeros(TOUCHES * (group + 2) + 1, Touch),
+        stack=np.zeros(STACK, np.int64),
     )
+    enter_static(workspace)
     return Setup(workspace, moving, sensing, shapes, edges, traits)
+
+
+def _have_bounds(sizes: FloatArray) -> npt.NDArray[np.bool_]:
+    """Return which bodies have bounds, if these are their sizes, bool [n]."""
+    return np.isfinite(sizes)
+
+
+def _typical(sizes: FloatArray) -> float:
+    """Return a length that suits most bodies; 1 if all are points."""
+    extended = sizes[sizes > 0.0]
+    return float(np.median(extended)) if len(extended) else 1.0
 
 
 def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
@@ -183,88 +211,43 @@ def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
     return None
 
 
-def _is_large(reach: FloatArray, moves: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return which bodies are too large for a cell if they move, bool [n]."""
-    bounded = reach[moves & np.isfinite(reach)]
-    typical = float(np.median(bounded)) if len(bounded) else 0.0
-    return ~(reach <= LARGE * typical)
-
-
-def _make_grid(
-    header: npt.NDArray[Any],
-    boxes: FloatArray,
-    static: npt.NDArray[np.int64],
-    reach: FloatArray,
-    resident: npt.NDArray[np.bool_],
-    positions: FloatArray,
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Choose the grid's cells, and enter static bodies; return (boundless, firsts, items)."""
-    furthest = float(reach[resident].max(initial=0.0)) * (1.0 + MARGIN)
-    bounded = static[np.isfinite(boxes[static]).all(axis=1)]
-    corners = np.concatenate(
-        [boxes[bounded, :2], boxes[bounded, 2:], positions[resident], np.zeros((0, 2))]
-    )
-    count = len(bounded) + int(resident.sum())
-    header["columns"] = header["rows"] = 1
-    header["cell"] = 1.0
-    if count > FEW_BODIES:
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        size = np.maximum(high - low, 1e-300)
-        cells = max(1.0, CELLS_PER_STATIC * len(bounded) + CELLS_PER_MOVING * resident.sum())
-        cell = max(2.0 * furthest, math.sqrt(size[0] / cells) * math.sqrt(size[1]))
-        # The field may be almost a line.
-        cell = max(cell, float(size.max()) / (4.0 * cells))
-        header["left"], header["bottom"], header["cell"] = low[0], low[1], cell
-        header["columns"], header["rows"] = np.maximum(1, np.ceil(size / cell)).astype(int)
-    cells = int(header["columns"][0] * header["rows"][0])
-    covered = np.zeros(len(boxes), np.int64)
-    covered[:] = NO_ONE
-    covered[bounded] = 0
-    counts = np.zeros(cells + 1, np.int64)
-    count_cells(header, boxes, furthest, covered, counts)
-    # Bodies that are nearly everywhere would only fill the lists.
-    wide = bounded[covered[bounded] > max(4.0, MANY_CELLS * cells)]
-    if len(wide):
-        covered[wide] = NO_ONE
-        counts[:] = 0
-        count_cells(header, boxes, furthest, covered, counts)
-    entered = np.flatnonzero(covered > 0)
-    boundless = np.setdiff1d(static, entered)
-    firsts = np.cumsum(counts)
-    items = np.zeros(firsts[-1], np.int64)
-    fill_cells(header, boxes[entered], furthest, entered, firsts[:-1].copy(), items)
-    return boundless, firsts, items
-
-
-def _plan_state(header: npt.NDArray[Any], cells: int) -> None:
+def _plan_state(header: npt.NDArray[Any]) -> None:
     """Write into a header where the parts of the state begin."""
     movers = int(header["movers"][0])
     header["leaves"] = leaf_count(movers)
-    header["heads"] = cells if movers > FEW_BODIES else 0
+    header["heads"] = 2 * header["leaves"] if header["has_grid"][0] else 0
     sizes = {
-        "motions_after_step_at": CLOCK_SIZE + Motion.itemsize * movers,
-        "plans_at": Motion.itemsize * movers,
+        "shown_after_step_at": CLOCK_SIZE + Motion.itemsize * movers,
+        "motions_at": Motion.itemsize * movers,
+        "plans_at": Course.itemsize * movers,
         "winners_at": Plan.itemsize * movers,
-        "heads_at": 8 * 2 * header["leaves"][0],
-        "inside_at": 8 * header["heads"][0],
-        "state_size": -(-header["sensors"][0] * header["bodies"][0] // 8) * 8,
+        "boxes_at": Seat.itemsize * 2 * header["leaves"][0],
+        "links_at": Box.itemsize * movers,
+        "grid_at": 8 * LINKS * movers,
+        "level_counts_at": Grid.itemsize,
+        "heads_at": 8 * LEVELS,
+        "state_size": 8 * header["heads"][0],
     }
     end = 0
     for name, size in sizes.items():
-        end += int(size)
+        end = in_lines(end + int(size))
         header[name] = end
 
 
 def _pack(header: npt.NDArray[Any], **parts: npt.NDArray[Any]) -> ByteArray:
     """Return one block: the header, into which offsets and lengths are written, and the parts."""
-    at = header.nbytes
+    at = in_lines(header.nbytes)
     for name, part in parts.items():
         header[f"{name}_at"] = at
         if name in (header.dtype.names or ()):
             header[name] = len(part)
-        at += part.nbytes
-    blocks = [header, *parts.values()]
-    return np.concatenate([block.view(np.uint8).ravel() for block in blocks])
+        at += in_lines(part.nbytes)
+    block: ByteArray = aligned_bytes(1, at)[0]
+    block[: header.nbytes] = header.view(np.uint8)
+    for name, part in parts.items():
+        start = int(header[f"{name}_at"][0])
+        block[start : start + part.nbytes] = part.view(np.uint8).ravel()
+    return block
 
 
 def with_query(setup: Setup, collider: Collider) -> tuple[Any, Any]:

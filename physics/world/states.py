@@ -1,58 +1,46 @@
 """The states of worlds, stepped and kept as bytes: what a single world and a batch share."""
 
 import hashlib
-import math
+import itertools
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arguments import not_negative, whole
-from ..kernels import inner, kernel
+from ..kernels.layouts import aligned_bytes, record_dtype
 from ..kernels.sealed import seal, unseal
-from .clock_time import is_earlier
-from .grid import NO_ONE, interacts
-from .records import (
-    CROSS_X,
-    CROSS_Y,
-    END,
-    MEET,
-    NOTHING,
-    Block,
-    Blocks,
-    Flags,
-    Hit,
-    PlanRecord,
-)
+from ..tolerances import FARTHEST
+from .lookup.inside import inside_blocks, pairs_inside
+from .records import END, Clock, Course, Header, Hit, Motion, Plan
 from .setup import ByteArray, Setup
-from .stepping import INVALID, step_worlds
-from .tournament import better
-from .view import (
-    WorldView,
-    clock_of,
-    header_of,
-    heads_of,
-    inside_of,
-    motions_after_step_of,
-    motions_of,
-    moving_of,
-    open_world,
-    plans_of,
-    traits_of,
-    winners_of,
-)
+from .stepping import INVALID, call_of, step_worlds
+from .view import CLOCK_SIZE
 
 FIRST_ROOM = 64  # hits; it grows as needed
 
-VERSION = 1  # of the format of snapshots
+VERSION = 2  # of the format of snapshots
 _MARK = b"ARKWORLD"
 _DIGEST_SIZE = 16  # bytes
 
-# What may be wrong in a snapshot. Kernels return its place here, for they have no words.
-_PARTS = ("", "a clock", "motions", "bodies inside sensors", "plans", "an order of plans", "lists")
-_CLOCK, _MOTIONS, _INSIDE, _PLANS, _WINNERS, _LISTS = range(1, 7)
+# What is kept of a moving body. All else follows from it, and is made again.
+Kept = record_dtype(
+    [
+        ("shown", Motion),
+        ("after_step", Motion),
+        ("motion", Motion),
+        ("at", np.float64),
+        ("at_low", np.float64),
+        ("speed", np.float64),
+        ("fresh", np.int64),
+    ]
+)
+_OF_COURSES = ("at", "at_low", "speed", "fresh")
 _MANY = 1 << 60  # of what is counted
-_LONGER_THAN_UNIT = 1.0 + 1e-6  # the square of a normal's length is less
+
+
+NO_HITS: npt.NDArray[Any] = np.zeros(0, Hit)
 
 
 class Stepper:
@@ -61,59 +49,104 @@ class Stepper:
     Args:
         setup: what the worlds share.
         states: uint8 [worlds, bytes], changed in place.
+        insides: uint8 [worlds, bytes], the same for what is inside sensors.
+
+    Attributes:
+        workspace: uint8 [bytes], a copy of the setup's.
     """
 
-    def __init__(self, setup: Setup, states: ByteArray) -> None:
-        self.workspace = setup.workspace.copy()
+    def __init__(self, setup: Setup, states: ByteArray, insides: ByteArray) -> None:
+        self.workspace = aligned_bytes(1, len(setup.workspace))[0]
+        self.workspace[:] = setup.workspace
         self._states = states
         self._has_sensors = len(setup.sensing) > 0
-        self._hits: npt.NDArray[Any] = np.zeros(0, Hit)
-        self._grow(FIRST_ROOM + 2 * len(setup.sensing))
+        self._hits: npt.NDArray[Any]
+        self._use(insides, np.zeros(FIRST_ROOM, Hit))
+
+    @property
+    def insides(self) -> ByteArray:
+        """What is inside sensors, uint8 [worlds, bytes], see `lookup.inside`."""
+        return self._insides
+
+    @insides.setter
+    def insides(self, blocks: ByteArray) -> None:
+        self._use(blocks, self._hits)
 
     def step(self, dt: float, steps: int) -> npt.NDArray[Any]:
         """Step all worlds; return their hits, sorted by world and time.
 
         Raises:
-            ValueError: if a position or velocity is not finite, or has become so.
+            ValueError: if a position or velocity is too large, or has become so.
         """
-        count = step_worlds(self._states, self.workspace, self._buffer, 0, dt, steps)
+        count = step_worlds(self._call, 0, dt, steps)
         while count < 0:
             if count == INVALID:
                 raise ValueError(
-                    "a position or velocity is not finite: it was set so, or has become too large "
-                    "for a number; or the time has"
+                    f"a position or velocity is not finite, or beyond {FARTHEST:g}: it was set so, "
+                    "or has become too large; or the time has"
                 )
-            self._grow(2 * len(self._hits))
-            count = step_worlds(self._states, self.workspace, self._buffer, -1 - count, dt, steps)
+            self._make_room()
+            count = step_worlds(self._call, -1 - count, dt, steps)
         if count == 0:
-            return self._hits[:0]
+            return NO_HITS  # a slice would take a tenth of the time of a short step
         hits = self._hits[:count].copy()
         if self._has_sensors and (hits["kind"] == END).any():
             # That a body left a sensor is known later than it happened.
             hits = hits[np.lexsort((hits["time"], hits["world"]))]
         return hits
 
-    def _grow(self, room: int) -> None:
-        """Make room for so many hits."""
-        hits = np.zeros(room, Hit)
+    def _make_room(self) -> None:
+        """Make room for more hits, and for more that is inside sensors."""
+        hits = np.zeros(2 * len(self._hits), Hit)
         hits[: len(self._hits)] = self._hits
-        self._hits, self._buffer = hits, hits.view(np.uint8)
+        insides = self._insides
+        if self._has_sensors:
+            header = self.workspace[: Header.itemsize].view(Header)[0]
+            insides = inside_blocks(pairs_inside(insides), int(header.bodies), True)
+        self._use(insides, hits)
+
+    def _use(self, insides: ByteArray, hits: npt.NDArray[Any]) -> None:
+        """Step with other arrays from now on."""
+        insides = np.ascontiguousarray(insides)
+        call = call_of(self._states, insides, self.workspace, hits)
+        # Together, so that Ctrl-C cannot leave addresses of arrays that are no longer there.
+        self._insides, self._hits, self._call = insides, hits, call
 
 
 def checked_step(dt: Any, steps: Any) -> tuple[float, int]:
     """Check the length of a step and the number of steps, and return them."""
-    if type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and 0 < steps < 1 << 63:
-        return dt, steps
     return not_negative("dt", dt), whole("steps", steps, at_least=1)
 
 
-def pack_states(states: ByteArray, setup: Setup) -> bytes:
-    """Return states, uint8 [worlds, bytes], and the digest of their setup, as a snapshot."""
-    return seal(_MARK, VERSION, _digest(setup) + states.tobytes())
+def pack_states(states: ByteArray, insides: Iterable[ByteArray], setup: Setup) -> bytes:
+    """Return worlds as a snapshot: what they hold, and the digest of their setup.
+
+    Args:
+        states: uint8 [worlds, bytes].
+        insides: uint8 [worlds, bytes], perhaps in parts.
+        setup: what the worlds share.
+    """
+    kept = np.zeros((len(states), len(setup.moving)), Kept)
+    courses = setup.records(states, "motions", Course)
+    kept["shown"] = setup.motion_view(states).view(Motion)[..., 0]
+    kept["after_step"] = setup.records(states, "shown_after_step", Motion)
+    for name in Motion.names or ():
+        kept["motion"][name] = courses[name]
+    for name in _OF_COURSES:
+        kept[name] = courses[name]
+    clocks = states[:, :CLOCK_SIZE].copy().view(Clock)
+    clocks["planned"] = 0
+    pairs = [own for part in insides for own in pairs_inside(part)]
+    counts = np.array([len(own) for own in pairs], np.int64)
+    parts = (clocks, kept, counts, *pairs)
+    return seal(_MARK, VERSION, _digest(setup) + b"".join(part.tobytes() for part in parts))
 
 
-def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> None:
+def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> ByteArray:
     """Write a snapshot into the states that it was taken of.
+
+    Returns:
+        the blocks of what is inside sensors, uint8 [worlds, bytes].
 
     Raises:
         TypeError: if it is not bytes.
@@ -121,162 +154,86 @@ def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> None:
             step leaves a world like that. The states do not change then.
     """
     content = unseal("snapshot of worlds", _MARK, VERSION, snapshot)
-    digest, kept = content[:_DIGEST_SIZE], content[_DIGEST_SIZE:]
-    if digest != _digest(setup) or len(kept) != states.nbytes:
+    worlds, movers, bodies = len(states), len(setup.moving), len(setup.traits)
+    sizes = [_DIGEST_SIZE, CLOCK_SIZE * worlds, Kept.itemsize * worlds * movers, 8 * worlds]
+    cuts = np.cumsum(sizes).tolist()
+    digest, clock_bytes, kept_bytes, count_bytes, pair_bytes = (
+        content[start:end] for start, end in itertools.pairwise([0, *cuts, len(content)])
+    )
+    if digest != _digest(setup) or len(content) < cuts[-1]:
         raise ValueError(
             "the snapshot is of another world: with other bodies, static ones elsewhere, other "
             "masks or restitutions, or another number of worlds"
         )
-    restored = np.empty(states.shape, np.uint8)
-    restored.reshape(-1)[:] = np.frombuffer(kept, np.uint8)
-    fault = find_fault(restored, setup.workspace)
-    if fault:
-        index, part = divmod(fault, len(_PARTS))
-        raise ValueError(f"the snapshot is corrupt: world {index} can't have such {_PARTS[part]}")
-    states[:] = restored
+    clocks = np.frombuffer(clock_bytes, Clock)
+    kept = np.frombuffer(kept_bytes, Kept).reshape(worlds, movers)
+    counts = np.frombuffer(count_bytes, np.int64)
+    if (counts < 0).any() or (counts > len(pair_bytes)).any():
+        raise _corrupt("numbers of bodies inside sensors")
+    if counts.sum() * 16 != len(pair_bytes):
+        raise ValueError("the snapshot is of another number of worlds, or corrupt")
+    pairs = np.frombuffer(pair_bytes, np.int64).reshape(-1, 2)
+    own_pairs = np.split(pairs, np.cumsum(counts)[:-1])
+    _check_clocks(clocks)
+    _check_motions(kept, clocks)
+    for own in own_pairs:
+        _check_pairs(own, setup)
+    insides = inside_blocks(own_pairs, bodies, len(setup.sensing) > 0)
+    states[:, :CLOCK_SIZE] = clocks.view(np.uint8).reshape(worlds, CLOCK_SIZE)
+    setup.motion_view(states).view(Motion)[..., 0] = kept["shown"]
+    setup.records(states, "shown_after_step", Motion)[:] = kept["after_step"]
+    courses = setup.records(states, "motions", Course)
+    for name in Motion.names or ():
+        courses[name] = kept["motion"][name]
+    for name in _OF_COURSES:
+        courses[name] = kept[name]
+    plans = setup.records(states, "plans", Plan)
+    for name in ("hits", "rests", "instant", "nowhere", "stage"):
+        plans[name] = 0
+    return insides
 
 
 def _digest(setup: Setup) -> bytes:
     return hashlib.sha256(setup.workspace.tobytes()).digest()[:_DIGEST_SIZE]
 
 
-@kernel
-def find_fault(states: Blocks, workspace: Block) -> int:
-    """Return world * len(_PARTS) + part of the first fault in states; 0 if there is none.
-
-    Stepping checks no index, and trusts that plans which hold are those that the last step left.
-
-    Args:
-        states: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
-    """
-    for index in range(states.shape[0]):
-        world = open_world(states[index], workspace)
-        part = 0
-        if not _is_possible_clock(world):
-            part = _CLOCK
-        elif not _are_finite(world):
-            part = _MOTIONS
-        elif not _are_flags(inside_of(world)):
-            part = _INSIDE
-        elif clock_of(world).planned:
-            # Otherwise the next step makes all of these anew.
-            if not _are_possible_plans(world):
-                part = _PLANS
-            elif not _are_winners(world):
-                part = _WINNERS
-            elif not _are_lists(world):
-                part = _LISTS
-        if part != 0:
-            return index * len(_PARTS) + part
-    return 0
+def _corrupt(part: str) -> ValueError:
+    return ValueError(f"the snapshot is corrupt: no world can have such {part}")
 
 
-@inner
-def _is_possible_clock(world: WorldView) -> bool:
-    """Tell whether a clock is a sum of two numbers, and its counts are possible."""
-    clock = clock_of(world)
-    if not (abs(clock.time) < math.inf and clock.time + clock.time_low == clock.time):
-        return False
-    if clock.planned not in (0, 1) or (clock.planned and not header_of(world).continuous):
-        return False
-    return bool(0 <= clock.capped < _MANY)
+def _check_clocks(clocks: npt.NDArray[Any]) -> None:
+    """Raise a ValueError unless clocks are sums of two numbers, and their counts are possible."""
+    whole_time = np.isfinite(clocks["time"]) & (
+        clocks["time"] + clocks["time_low"] == clocks["time"]
+    )
+    counts = (clocks["capped"] >= 0) & (clocks["capped"] < _MANY)
+    flags = (clocks["planned"] == 0) & ((clocks["fresh"] == 0) | (clocks["fresh"] == 1))
+    if not (whole_time & counts & flags).all():
+        raise _corrupt("a clock")
 
 
-@inner
-def _are_finite(world: WorldView) -> bool:
-    """Tell whether all positions and velocities are finite numbers."""
-    motions = motions_of(world)
-    for slot in range(motions.shape[0]):
-        motion = motions[slot]
-        for number in (motion.x, motion.y, motion.vx, motion.vy):
-            if not abs(number) < math.inf:
-                return False
-    return True
+def _check_motions(kept: npt.NDArray[Any], clocks: npt.NDArray[Any]) -> None:
+    """Raise a ValueError unless motions are not too large, and began before now."""
+    for part in ("shown", "after_step", "motion"):
+        for name in ("x", "y", "vx", "vy"):
+            if not (np.abs(kept[part][name]) <= FARTHEST).all():
+                raise _corrupt("motions")
+    if not ((kept["speed"] >= 0.0) & np.isfinite(kept["speed"])).all():
+        raise _corrupt("speeds")
+    at, low, now, now_low = kept["at"], kept["at_low"], clocks["time"], clocks["time_low"]
+    past = (at < now[:, None]) | ((at == now[:, None]) & (low <= now_low[:, None]))
+    if not (past & (at + low == at) & ((kept["fresh"] == 0) | (kept["fresh"] == 1))).all():
+        raise _corrupt("courses")
 
 
-@inner
-def _are_flags(inside: Flags) -> bool:
-    """Tell whether all flags are 0 or 1."""
-    others = 0
-    for place in range(inside.shape[0]):
-        others += inside[place] > 1
-    return bool(others == 0)
-
-
-@inner
-def _are_possible_plans(world: WorldView) -> bool:
-    """Tell whether every plan is one that a step may leave."""
-    plans = plans_of(world)
-    possible = True
-    for slot in range(plans.shape[0]):
-        possible = possible and _is_possible_plan(world, plans[slot], slot)
-    return possible
-
-
-@inner
-def _is_possible_plan(world: WorldView, plan: PlanRecord, slot: int) -> bool:
-    """Tell whether a body's plan is one that a step may leave."""
-    header, clock = header_of(world), clock_of(world)
-    if plan.at != clock.time or plan.at_low != clock.time_low or plan.hits != 0:
-        return False
-    if plan.time + plan.time_low != plan.time or not is_earlier(
-        clock.time, clock.time_low, plan.time, plan.time_low
-    ):
-        return False
-    body = moving_of(world)[slot]
-    roams = traits_of(world)[body].roams
-    if not roams and not (0 <= plan.column < header.columns and 0 <= plan.row < header.rows):
-        return False
-    # The motion that the plan was made for; users may have changed the present one.
-    motion = motions_after_step_of(world)[slot]
-    if plan.kind == NOTHING:
-        return bool(plan.time == math.inf)
-    if plan.kind == CROSS_X:
-        column = plan.column + (1 if motion.vx > 0.0 else -1)
-        return bool(not roams and 0 <= column < header.columns)
-    if plan.kind == CROSS_Y:
-        row = plan.row + (1 if motion.vy > 0.0 else -1)
-        return bool(not roams and 0 <= row < header.rows)
-    if plan.kind != MEET or not 0 <= plan.partner < header.bodies or plan.partner == body:
-        return False
-    if not plan.normal_x * plan.normal_x + plan.normal_y * plan.normal_y < _LONGER_THAN_UNIT:
-        return False
-    return interacts(traits_of(world)[body], traits_of(world)[plan.partner])
-
-
-@inner
-def _are_winners(world: WorldView) -> bool:
-    """Tell whether a tournament has the winners that its plans give."""
-    winners, plans = winners_of(world), plans_of(world)
-    leaves = winners.shape[0] // 2
-    for slot in range(leaves):
-        if winners[leaves + slot] != (slot if slot < plans.shape[0] else -1):
-            return False
-    for node in range(leaves - 1, 0, -1):
-        if winners[node] != better(plans, winners[2 * node], winners[2 * node + 1]):
-            return False
-    return True
-
-
-@inner
-def _are_lists(world: WorldView) -> bool:
-    """Tell whether every body that does not roam is once in the list of its plan's cell."""
-    heads, plans = heads_of(world), plans_of(world)
-    traits, moving = traits_of(world), moving_of(world)
-    missing = 0
-    for slot in range(plans.shape[0]):
-        missing += 1 - traits[moving[slot]].roams
-    if heads.shape[0] == 0:
-        return True
-    for cell in range(heads.shape[0]):
-        previous, slot = NO_ONE, heads[cell]
-        while slot != NO_ONE:
-            if not 0 <= slot < plans.shape[0] or missing == 0:
-                return False
-            plan = plans[slot]
-            own = plan.row * header_of(world).columns + plan.column
-            if traits[moving[slot]].roams or own != cell or plan.previous != previous:
-                return False
-            missing -= 1
-            previous, slot = slot, plan.next
-    return bool(missing == 0)
+def _check_pairs(pairs: npt.NDArray[np.int64], setup: Setup) -> None:
+    """Raise a ValueError unless bodies are inside sensors, in order, and each once."""
+    bodies = len(setup.traits)
+    if not len(pairs):
+        return
+    if ((pairs < 0) | (pairs >= bodies)).any():
+        raise _corrupt("bodies inside sensors")
+    keys = pairs[:, 1] * bodies + pairs[:, 0]
+    sensors = setup.traits["sensor"] >= 0
+    if (np.diff(keys) <= 0).any() or not (sensors[pairs[:, 0]] & ~sensors[pairs[:, 1]]).all():
+        raise _corrupt("bodies inside sensors")

@@ -2,60 +2,94 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from ..kernels import kernel
-from ..kernels.borrowed import borrowed
-from .clock_time import elapsed, later
-from .events import forget_moved, leave_all_sensors
-from .grid import enter_all
-from .impacts import move_to, run_events
+from ..kernels.borrowed import BYTE
+from ..kernels.portable.addresses import array_at
+from ..tolerances import FARTHEST, MOST_RESTS
+from .clock_time import later
+from .courses import move_to, place_at
+from .events import has_room, leave_all_sensors, leave_placed
+from .impacts import run_events
+from .lookup.boxes import first_margin, fit_all, fit_here
+from .lookup.tree import NO_ONE
 from .overlaps import relax_overlaps, resolve_overlaps
-from .prediction import predict
-from .records import NOTHING, Block, Blocks, Hit, Hits, Motions
+from .prediction import find_stale, predict
+from .records import CRUSHED, FREE, NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
 from .tournament import start_tournament
 from .view import (
     WorldView,
     clock_of,
     header_of,
-    motions_after_step_of,
     motions_of,
     moving_of,
     open_world,
     plans_of,
     progress_of,
+    shown_after_step_of,
+    shown_of,
+    stale_of,
     winners_of,
 )
 
 # What `step_worlds` returns if a number is not finite.
 INVALID = -(1 << 62)
 
-HIT_SIZE = Hit.itemsize
+
+def call_of(states: Blocks, insides: Blocks, workspace: Block, hits: Hits) -> npt.NDArray[np.int64]:
+    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [9].
+
+    The arrays must live as long as it is used.
+
+    Args:
+        states, insides: uint8 [worlds, bytes], contiguous; workspace: uint8 [bytes]; see `records`.
+        hits: the buffer, `Hit` [room].
+    """
+    return np.array(
+        [
+            *(states.ctypes.data, *states.shape),
+            *(insides.ctypes.data, insides.shape[1]),
+            *(workspace.ctypes.data, len(workspace)),
+            *(hits.ctypes.data, len(hits)),
+        ],
+        np.int64,
+    )
 
 
 @kernel
-def step_worlds(
-    states: Blocks, workspace: Block, buffer: Block, count: int, dt: float, steps: int
-) -> int:
+def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
     """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
 
-    If the buffer is full, it stops early and returns -1 - count. Call it again with a larger buffer
-    that holds the same hits, and it continues. It returns `INVALID` if a position or velocity of a
-    world is not finite, or has become so, or its time.
+    If the buffer or a block of what is inside is full, it stops early and returns -1 - count. Call
+    it again with larger ones that hold the same, and it continues. It returns `INVALID` if a
+    position or velocity of a world is not finite or beyond `FARTHEST`, or has become so, or its
+    time.
 
     Args:
-        states: uint8 [worlds, bytes]; workspace: uint8 [bytes], see `records`.
-        buffer: uint8 [bytes], room for `Hit` records, of which ``count`` are there already.
-        count, dt, steps: see above.
+        call: where the worlds are, see `call_of`. Each array that Python passes to a kernel takes a
+            tenth of a microsecond, and so this is only one.
+        count: of the `Hit` records that are in the buffer already.
+        dt, steps: see above.
     """
-    hits = borrowed(buffer, 0, buffer.shape[0] // HIT_SIZE, Hit)
+    states = array_at(call[0], (call[1], call[2]), BYTE)
+    insides = array_at(call[3], (call[1], call[4]), BYTE)
+    workspace = array_at(call[5], (call[6],), BYTE)
+    hits = array_at(call[7], (call[8],), Hit)
     for world_index in range(states.shape[0]):
-        world = open_world(states[world_index], workspace)
+        world = open_world(states[world_index], insides[world_index], workspace)
         progress = progress_of(world)
         if world_index < progress.world:
             continue
         progress.world = world_index
         progress.full = 0
         while progress.step < steps:
-            if progress.running == 0 and not begin_step(world, dt):
+            if progress.running == 0:
+                if not has_room(world, hits, count):
+                    return -1 - count
+                count = begin_step(world, hits, count, world_index, dt)
+            if count == INVALID:
                 progress.step = 0
                 progress.world = 0
                 return INVALID
@@ -79,36 +113,67 @@ def step_worlds(
 
 
 @kernel
-def begin_step(world: WorldView, dt: float) -> bool:
-    """Prepare the plans of a step; return False, and do nothing, if a number is not finite.
+def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: float) -> int:
+    """Prepare the plans of a step; return how many hits there are.
 
-    Plans from the last step still hold if nobody has written to the motions since.
+    It returns `INVALID`, and does nothing, if a number is not finite, or too large. Plans from the
+    last step still hold, but for the bodies that somebody has moved since.
     """
     clock = clock_of(world)
     progress = progress_of(world)
     progress.end, progress.end_low = later(clock.time, clock.time_low, dt)
     if not abs(progress.end) < math.inf:
-        return False
+        return INVALID
     progress.crowded = 0
-    if clock.planned and _are_equal(motions_of(world), motions_after_step_of(world)):
-        return True
-    if not _are_finite(motions_of(world)):
-        return False
+    progress.inert = 0
+    progress.hits = 0
+    is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
+    if is_calm and clock.planned:
+        return count
+    if not _are_near(shown_of(world)):
+        return INVALID
+    _adopt_shown(world)
     if header_of(world).sensors > 0:
-        forget_moved(world)
-    clock.planned = 0
-    _clear_plans(world)
+        count = leave_placed(world, hits, count, world_index)
     if header_of(world).continuous:
-        enter_all(world)
-        _predict_all(world)
+        _plan(world, clock.planned == 0)
         if progress.touching and relax_overlaps(world):
-            _predict_all(world)
+            _plan(world, False)
+        clock.planned = 1
+        _end_freshness(world)
     else:
         progress.next_slot = 0
         progress.next_near = 0
         _move_all(world)
-        enter_all(world)
-    return True
+        fit_all(world, progress.end, progress.end_low)
+    return count
+
+
+@kernel
+def _adopt_shown(world: WorldView) -> None:
+    """Let every body that a user has moved begin a new course, and be fresh."""
+    clock = clock_of(world)
+    motions, shown, after_step = motions_of(world), shown_of(world), shown_after_step_of(world)
+    for slot in range(motions.shape[0]):
+        seen, after = shown[slot], after_step[slot]
+        if seen.x != after.x or seen.y != after.y or seen.vx != after.vx or seen.vy != after.vy:
+            motion = motions[slot]
+            motion.x, motion.y, motion.vx, motion.vy = seen.x, seen.y, seen.vx, seen.vy
+            after.x, after.y, after.vx, after.vy = seen.x, seen.y, seen.vx, seen.vy
+            motion.at, motion.at_low = clock.time, clock.time_low
+            motion.speed = abs(seen.vx) + abs(seen.vy)
+            motion.fresh = 1
+            clock.fresh = 1
+
+
+@kernel
+def _end_freshness(world: WorldView) -> None:
+    """Note that the plans of all bodies hold, unless relaxation has left overlaps."""
+    motions = motions_of(world)
+    if not progress_of(world).crowded:
+        clock_of(world).fresh = 0
+        for slot in range(motions.shape[0]):
+            motions[slot].fresh = 0
 
 
 @kernel
@@ -124,30 +189,14 @@ def _are_equal(motions: Motions, others: Motions) -> bool:
 
 
 @kernel
-def _are_finite(motions: Motions) -> bool:
-    """Return whether all positions and velocities are finite numbers."""
+def _are_near(motions: Motions) -> bool:
+    """Return whether all positions and velocities are numbers of which one may take the squares."""
     for slot in range(motions.shape[0]):
         motion = motions[slot]
-        # inf - inf and nan - nan are nan, and differ from 0.
-        total = abs(motion.x) + abs(motion.y) + abs(motion.vx) + abs(motion.vy)
-        if total - total != 0.0:
-            return False
+        for number in (motion.x, motion.y, motion.vx, motion.vy):
+            if not abs(number) <= FARTHEST:  # nor is nan
+                return False
     return True
-
-
-@kernel
-def _clear_plans(world: WorldView) -> None:
-    """Let every body plan nothing, and be where its motion says now."""
-    clock = clock_of(world)
-    plans = plans_of(world)
-    for slot in range(plans.shape[0]):
-        plan = plans[slot]
-        plan.at = clock.time
-        plan.at_low = clock.time_low
-        plan.hits = 0
-        plan.time = math.inf
-        plan.time_low = 0.0
-        plan.kind = NOTHING
 
 
 @kernel
@@ -160,18 +209,56 @@ def _move_all(world: WorldView) -> None:
 
 
 @kernel
-def _predict_all(world: WorldView) -> None:
-    """Make all plans, at the beginning of a step."""
-    clock = clock_of(world)
+def _plan(world: WorldView, anew: bool) -> None:
+    """Make the plans of fresh bodies, and of those that planned to meet them; or all plans."""
+    motions = motions_of(world)
     progress_of(world).touching = 0
-    start_tournament(winners_of(world), plans_of(world))
-    for slot in range(plans_of(world).shape[0]):
+    fresh = 0
+    for slot in range(motions.shape[0]):
+        fresh += motions[slot].fresh
+    if anew or 2 * fresh > motions.shape[0]:
+        _plan_all(world)
+    else:
+        _plan_fresh(world)
+
+
+@kernel
+def _plan_all(world: WorldView) -> None:
+    """Make all boxes and all plans."""
+    clock = clock_of(world)
+    plans = plans_of(world)
+    for slot in range(plans.shape[0]):
+        plan = plans[slot]
+        plan.time = math.inf
+        plan.time_low = 0.0
+        plan.kind = NOTHING
+        plan.suitor = NO_ONE
+    fit_all(world, clock.time, clock.time_low)
+    start_tournament(winners_of(world), plans)
+    for slot in range(plans.shape[0]):
         predict(world, slot, clock.time, clock.time_low, True)
 
 
 @kernel
+def _plan_fresh(world: WorldView) -> None:
+    """Make the plans of fresh bodies, and of those that planned to meet them."""
+    clock, motions, stale = clock_of(world), motions_of(world), stale_of(world)
+    count = 0
+    for slot in range(motions.shape[0]):
+        if motions[slot].fresh:
+            count = find_stale(world, slot, count)
+            fit_here(world, slot, clock.time, clock.time_low, first_margin(world, slot))
+    for slot in range(motions.shape[0]):
+        if motions[slot].fresh:
+            predict(world, slot, clock.time, clock.time_low, False)
+    for index in range(count):
+        if not motions[stale[index]].fresh:
+            predict(world, stale[index], clock.time, clock.time_low, False)
+
+
+@kernel
 def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
-    """Move every body to its position at the end; return how many hits there are.
+    """Show the position of every body at the end; return how many hits there are.
 
     It returns `INVALID` if a position or velocity has become too large for a number.
     """
@@ -181,23 +268,27 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
     if progress.full:
         return count
     end, end_low = progress.end, progress.end_low
-    clock.time, clock.time_low = end, end_low
-    clock.planned = header.continuous and not progress.crowded
     motions, plans = motions_of(world), plans_of(world)
-    after_step = motions_after_step_of(world)
+    shown, after_step = shown_of(world), shown_after_step_of(world)
+    total = 0.0
     for slot in range(header.movers):
-        motion, after, plan = motions[slot], after_step[slot], plans[slot]
-        if plan.hits < header.max_hits:
-            since = elapsed(end, end_low, plan.at, plan.at_low)
-            motion.x += motion.vx * since
-            motion.y += motion.vy * since
-            plan.at, plan.at_low = end, end_low
-        else:
-            # It stays where it is for the rest of this step, and the next step makes new plans.
-            clock.planned = 0
-        plan.hits = 0
-        after.x, after.y, after.vx, after.vy = motion.x, motion.y, motion.vx, motion.vy
-    if not _are_finite(motions):
+        motion, plan, seen, after = motions[slot], plans[slot], shown[slot], after_step[slot]
+        vx, vy = motion.vx, motion.vy
+        x, y = place_at(motion, end, end_low)
+        if not header.continuous:
+            motion.x, motion.y = x, y
+            motion.at, motion.at_low = end, end_low
+        if not header.continuous or plan.stage >= CRUSHED or plan.rests >= MOST_RESTS:
+            # What it passes by in this step, it hits in the next one.
+            motion.fresh = 1
+            clock.fresh = 1
+        plan.hits = plan.rests = plan.instant = plan.nowhere = 0
+        plan.stage = FREE
+        seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
+        after.x, after.y, after.vx, after.vy = x, y, vx, vy
+        total += abs(x) + abs(y) + abs(vx) + abs(vy)
+    clock.time, clock.time_low = end, end_low
+    if not total <= FARTHEST and not _are_near(shown):
         clock.planned = 0
         return INVALID
     return count

@@ -1,14 +1,15 @@
 """`World`: many bodies, stepped from impact to impact, and what happened to them."""
 
 import copy
+import math
 import warnings
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, near, not_negative, vector, whole
+from ..arguments import finite, integer, inverse_mass, near_all, not_negative, vector, whole
 from ..body import Body, FloatArray
 from ..drawing import draw_scene
 from ..errors import HitLimitWarning
@@ -16,29 +17,15 @@ from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
 from ..shapes.colliders import AxisAlignedRectangle, Collider, Particle
 from .forms import Built, Scene
+from .lookup.answers import RayHit, RayHits, answer_of, answers_of, new_ray, new_rays
 from .queries import find_first, find_overlapping
-from .setup import BodySpec, ByteArray, Setup, with_query
+from .setup import BodySpec, ByteArray, Setup
 from .states import checked_step, pack_states, unpack_states
 
 IndexArray = npt.NDArray[np.int64]
 
 ALL = -1  # a mask of every category
-
-
-class RayHit(NamedTuple):
-    """What a ray meets first.
-
-    Attributes:
-        body: its index.
-        fraction: of the ray, from 0 at its start (also if it starts inside the body) to 1.
-        point: where the ray, or the centre of the disc that is cast, is then.
-        normal: unit vector out of the body.
-    """
-
-    body: int
-    fraction: float
-    point: FloatArray
-    normal: FloatArray
+POINT = Particle(0.0)
 
 
 class World:
@@ -59,9 +46,11 @@ class World:
         bodies: added in this order, see `add`.
         continuous: if False, each step is the procedure of the lecture on collisions in games
             instead: move by dt, detect, relax, bounce.
-        max_hits: of one body in one step. A body that has used them up stays where it is for the
-            rest of the step; `capped` counts that, and there is a `HitLimitWarning`. (Only bodies
-            that are squeezed, or very fast, have so many.)
+        max_hits: of one body in one step. A body that has used them up bounces no more in that
+            step: it rests on what it hits. `capped` counts that, and there is a `HitLimitWarning`.
+            A hit counts tenfold if its bodies have gone less than 1e-4 of their size to it, or if
+            the whole world has had ``max_hits`` in this step. (So a game does not wait long for
+            bodies that are squeezed, or very fast.)
     """
 
     def __init__(
@@ -83,7 +72,7 @@ class World:
 
         Args:
             body: its ``velocity``, ``mass`` and ``restitution`` are used, too, if it has them.
-            category: one or several of 63 bits.
+            category: one or several of 64 bits; with 0 it meets nothing, and no query finds it.
             mask: the categories that it meets. Two bodies meet if each one's mask has a bit of the
                 other one's category.
             sensor: it is not solid: there are events when another body enters or leaves it.
@@ -124,8 +113,8 @@ class World:
     def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
         """Put a body somewhere, give it another velocity, or both.
 
-        Overlaps that this makes are relaxed in the next step. A body with a new position is inside
-        no sensor until a step finds it there.
+        The next step relaxes the overlaps that this makes. It begins with an `END` for each sensor
+        that the body is no longer inside, and a `BEGIN` for each that it is now inside.
         """
         body = self._index(index)
         changes = [] if position is None else [(slice(0, 2), vector("position", position))]
@@ -139,8 +128,6 @@ class World:
             scene = self._edit()
             for columns, value in changes:
                 scene.motions[body][columns] = value
-        if position is not None:
-            (self._built or self._scene).forget_inside(body)
 
     @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:
@@ -179,7 +166,7 @@ class World:
 
     @property
     def capped(self) -> int:
-        """How often a body has used up its hits of a step."""
+        """How often a body has used up its hits of a step, or had no room."""
         return (self._built or self._scene).capped
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
@@ -191,26 +178,28 @@ class World:
 
         Raises:
             InseparableError: no finite translation separates two solid bodies of which one moves.
-            ValueError: ``dt`` is negative or not finite, or a position or velocity has become too
-                large for a number.
+            ValueError: ``dt`` is negative or not finite, or a position or velocity is beyond 1e140,
+                or has become so.
             RuntimeError: another call is in progress.
         """
-        length, count = checked_step(dt, steps)
+        # Most steps save this call, and the next but one.
+        if not (type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps == 1):
+            dt, steps = checked_step(dt, steps)
         guard = self._alone
         if guard.taken:
             guard.refuse()
         guard.taken = True
         try:
-            built = self._built or self.built()  # most steps save a call
-            hits = built.stepper.step(length, count)
+            built = self._built or self.built()
+            hits = built.stepper.step(dt, steps)
         finally:
             guard.taken = False
         if len(hits) and built.capped != built.warned:
             built.warned = built.capped
             warnings.warn(
-                f"a body used up the hits of a step (max_hits={self._scene.max_hits}), and stayed "
-                "where it was for the rest of it. It is squeezed, or so fast that it needs shorter "
-                "steps or a larger max_hits",
+                "a body has no room, or used up the hits of a step (max_hits="
+                f"{self._scene.max_hits}); for the rest of it, it did not bounce. If it is only "
+                "very fast, it needs shorter steps or a larger max_hits",
                 HitLimitWarning,
                 stacklevel=2,
             )
@@ -219,12 +208,12 @@ class World:
     @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that contain a point."""
-        return self._overlapping(Particle(0.0), near("point", point), mask)
+        return self._overlapping(POINT, vector("point", point), mask)
 
     @alone
     def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
         """Return the indices of the bodies that overlap a box, from its lower left corner up."""
-        low, high = near("lower", lower), near("upper", upper)
+        low, high = vector("lower", lower), vector("upper", upper)
         if not (low[0] < high[0] and low[1] < high[1]):
             raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
         middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
@@ -242,29 +231,27 @@ class World:
         a side does not. At a corner the normal points against the ray, but is turned no further
         than the normals of the corner's sides.
         """
-        x, y = near("start", start)
-        way = np.subtract(near("end", end), (x, y))
-        built = self.built()
-        index, fraction, normal_x, normal_y = find_first(
-            built.states[0],
-            built.stepper.workspace,
-            *with_query(built.setup, Particle(radius)),
-            x,
-            y,
-            float(way[0]),
-            float(way[1]),
-            _bits("mask", mask),
-        )
-        if index < 0:
-            return None
-        point = np.add((x, y), fraction * way)
-        return RayHit(int(index), float(fraction), point, np.array((-normal_x, -normal_y)))
+        ray = new_ray(*vector("start", start), *vector("end", end))
+        self._cast(ray, radius, mask)
+        return answer_of(ray)
+
+    @alone
+    def query_rays(self, starts: Any, ends: Any, radius: float = 0.0, mask: int = ALL) -> RayHits:
+        """Return what many rays meet first, with the answers of `query_ray`, but much faster.
+
+        Args:
+            starts, ends: float64 [n, 2].
+            radius, mask: of all rays.
+        """
+        rays = new_rays(near_all("starts", starts), near_all("ends", ends))
+        self._cast(rays, radius, mask)
+        return answers_of(rays)
 
     @alone
     def snapshot(self) -> bytes:
         """Return all that changes as the world is stepped, as bytes for `restore`."""
         built = self.built()
-        return pack_states(built.states, built.setup)
+        return pack_states(built.states, [built.stepper.insides], built.setup)
 
     @alone
     def restore(self, snapshot: bytes) -> None:
@@ -274,14 +261,19 @@ class World:
             ValueError: if it is corrupt, or of another world. This world does not change then.
         """
         built = self.built()
-        unpack_states(snapshot, built.states, built.setup)
+        built.stepper.insides = unpack_states(snapshot, built.states, built.setup)
         built.warned = built.capped
 
     @alone
-    def copies(self, count: int) -> tuple[Setup, ByteArray]:
-        """Return what does not change as the world is stepped, and copies of what does."""
+    def copies(self, count: int) -> tuple[Setup, ByteArray, ByteArray]:
+        """Return what does not change as the world is stepped, and copies of what does.
+
+        Returns:
+            (setup, states, insides), both uint8 [count, bytes].
+        """
         built = self.built()
-        return built.setup, np.repeat(built.states, count, axis=0)
+        insides = np.repeat(built.stepper.insides, count, axis=0)
+        return built.setup, np.repeat(built.states, count, axis=0), insides
 
     def built(self) -> Built:
         """Return the form of the world that kernels step; it is built if need be."""
@@ -343,13 +335,26 @@ class World:
         part.flags.writeable = False
         return part
 
+    def _cast(self, rays: npt.NDArray[Any], radius: float, mask: int) -> None:
+        """Let rays, or discs that are cast along them, meet bodies."""
+        shape = POINT if type(radius) is float and radius == 0.0 else Particle(radius)
+        rays["room"] = shape.rounding
+        built = self.built()
+        find_first(
+            built.states[0],
+            built.stepper.workspace,
+            *built.tables_with(shape),
+            rays.view(np.uint8),
+            _bits("mask", mask),
+        )
+
     def _overlapping(self, shape: Collider, position: tuple[float, float], mask: int) -> IndexArray:
         built = self.built()
         found = np.zeros(len(self), np.int64)
         count = find_overlapping(
             built.states[0],
             built.stepper.workspace,
-            *with_query(built.setup, shape),
+            *built.tables_with(shape),
             finite("x", position[0]),
             finite("y", position[1]),
             _bits("mask", mask),

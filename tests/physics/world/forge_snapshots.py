@@ -23,7 +23,8 @@ from arkanoid.physics import (
     World,
     WorldBatch,
 )
-from arkanoid.physics.world.records import Clock, Motion, Plan
+from arkanoid.physics.world.records import Clock
+from arkanoid.physics.world.states import Kept
 from helpers.bodies import SMALL_SHAPES, room
 from helpers.forging import forge, opened, sealed_again
 
@@ -32,7 +33,7 @@ SECONDS = 60  # in which one of them is stepped, or it hangs
 
 
 def make_world(bodies: int, continuous: bool = True) -> World:
-    """Return a room with bodies, two sensors, and a few large ones that roam."""
+    """Return a room with bodies, two sensors, and a few large ones."""
     rng = np.random.default_rng(bodies)
     world = World(
         [*room(12, 10), Body(AxisAlignedRectangle(1, 0.25), (3, 4.4), (0.1, 0))],
@@ -51,26 +52,20 @@ def make_world(bodies: int, continuous: bool = True) -> World:
 
 
 def tables(world: World, content: bytearray, worlds: int) -> list[Any]:
-    """Return the parts of a snapshot's states as writable arrays of records, [n]."""
-    header = world.built().setup.header
-    size = int(header.state_size)
-    found = []
-    index = np.dtype([("place", np.int64)])
-    flag = np.dtype([("flag", np.uint8)])
-    movers = int(header.movers)
-    for start in range(DIGEST, DIGEST + worlds * size, size):
-        parts = [
-            (Clock, 1, 0),
-            (Motion, movers, Clock.itemsize),
-            (Motion, movers, int(header.motions_after_step_at)),
-            (Plan, movers, int(header.plans_at)),
-            (Plan, movers, int(header.plans_at)),
-            (index, 2 * int(header.leaves), int(header.winners_at)),
-            (index, int(header.heads), int(header.heads_at)),
-            (flag, int(header.sensors * header.bodies), int(header.inside_at)),
-        ]
-        found += [np.frombuffer(content, dtype, n, start + at) for dtype, n, at in parts if n]
-    return found
+    """Return the parts of a snapshot's content as writable arrays of records, [n]."""
+    movers = int(world.built().setup.header.movers)
+    index = np.dtype([("count", np.int64)])
+    pair = np.dtype([("sensor", np.int64), ("body", np.int64)])
+    parts: list[Any] = []
+    at = DIGEST
+    for dtype, count in ((Clock, worlds), (Kept, worlds * movers), (index, worlds)):
+        parts.append(np.frombuffer(content, dtype, count, at))
+        at += dtype.itemsize * count
+    pairs = np.frombuffer(content, pair, -1, at)
+    kept = parts[1]
+    flat = [kept[name] for name in ("shown", "after_step", "motion")]
+    rest = kept[["at", "at_low", "fresh"]]
+    return [part for part in (parts[0], *flat, rest, parts[2], pairs) if len(part)]
 
 
 def main() -> None:

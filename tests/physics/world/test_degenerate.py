@@ -17,8 +17,9 @@ from arkanoid.physics import (
     Rectangle,
     World,
 )
-from helpers.bodies import DISC, FLOOR, SHAPES, bodies_of, deepest_overlap
-from hypothesis import given, settings
+from helpers.bodies import DISC, FLOOR, SHAPES, SMALL_SHAPES, bodies_of, deepest_overlap
+from helpers.bodies import room as box_of
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 # Relaxation, as a step begins.
@@ -50,14 +51,18 @@ def test_static_and_kinematic_bodies_may_overlap_as_they_like() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.integers(2, 12))
+@example(547, 12)
 def test_a_heap_is_relaxed(seed: int, count: int) -> None:
-    """Any shapes at almost one position, on a floor: after a few steps nothing overlaps."""
+    """Any shapes at almost one position, on a floor: after a few steps nothing overlaps.
+
+    Pair by pair, a light body between heavy ones took thousands of rounds.
+    """
     rng = np.random.default_rng(seed)
     world = World([FLOOR])
     for _ in range(count):
         shape, mass = SHAPES[rng.integers(len(SHAPES))], float(rng.uniform(0.1, 10))
         world.add(Body(shape, rng.uniform((-1, -0.3), (1, 1.2)), mass=mass))
-    world.step(0.0, steps=100)
+    world.step(0.0, steps=20)
     # Two that overlap by less than rounding tells only touch: there is no contact.
     assert deepest_overlap(bodies_of(world)) == 0.0
     assert world.velocities.tolist() == [[0, 0]] * (count + 1)
@@ -90,25 +95,27 @@ def test_a_body_put_into_a_wall_comes_out_on_the_near_side() -> None:
 
 @pytest.mark.parametrize("velocity", [(0, 0), (1, 0.5), (1e9, 1e-9)])
 def test_too_little_room_between_two_walls_is_no_trap(velocity: tuple[float, float]) -> None:
-    """A disc of width 1 is between walls 0.8 apart. If it moves, a warning says it is squeezed."""
-    world = World([Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (0.8, 0))])
+    """A disc of width 1 is between walls 0.8 apart. If it moves, a warning says it is squeezed.
+
+    Then it has lost its speed across the walls, and goes on along them.
+    """
+    world = World(Body(AxisAlignedRectangle(2, 20), (x, 0)) for x in (-1, 1.8))
     world.add(Body(DISC, (0.4, 0), velocity, mass=1))
     for step in range(1, 4):
-        if velocity == (0, 0):
+        if velocity == (0, 0) or step > 1:
             assert len(world.step(1.0)) == 0
         else:
-            with pytest.warns(HitLimitWarning, match="max_hits=10000"):
-                world.step(1.0)
-        assert world.capped == (step if velocity != (0, 0) else 0)
-        assert np.isfinite(world.positions).all()
+            with pytest.warns(HitLimitWarning, match="max_hits=1000"):
+                assert 1000 <= len(world.step(1.0)) <= 1002
+        assert world.capped == (velocity != (0, 0))
+        assert world.velocities[2].tolist() == [0, velocity[1]]
         assert abs(world.positions[2, 0] - 0.4) < 0.2
+        assert world.positions[2, 1] == pytest.approx(velocity[1] * step, rel=1e-14)
         assert world.time == step
     # With enough room, it is free again.
-    world.place(1, (5, 0))
-    hits = world.step(1e-9)
-    assert deepest_overlap(bodies_of(world)) <= 1e-12
-    assert len(hits) <= 2
-    assert abs(world.velocities[2]).tolist() == list(velocity)
+    world.place(2, (0.4, 20), (0, -1))
+    assert len(world.step(9.0)) == 0
+    assert world.positions[2].tolist() == [0.4, 11]
 
 
 def test_identical_bodies_at_the_same_position_separate() -> None:
@@ -181,9 +188,11 @@ def test_a_squeezed_ball_is_reported_and_is_free_when_the_paddle_leaves() -> Non
         hits = world.step(4.0)
     assert world.capped == 1
     assert world.time == 4
-    assert len(hits) == 100
+    # The hundredth makes it inert: one more lets it rest on one wall, the last finds no room.
+    assert 101 <= len(hits) <= 103
     assert (np.diff(hits["time"]) >= 0).all()
-    assert hits["time"][-1] < 3.5
+    assert hits["time"][99] < 3.5
+    assert hits["time"][-1] <= 3.5
     assert world.positions[paddle].tolist() == [1, 0]
     assert world.velocities[paddle].tolist() == [-1, 0]
     # Now it has no room. Whether it is pushed out or not: all is finite, and time continues.
@@ -203,35 +212,42 @@ def test_a_squeezed_ball_is_reported_and_is_free_when_the_paddle_leaves() -> Non
 
 
 def test_the_cap_is_for_one_body_and_one_step() -> None:
-    """With three hits per step, a ball that would have ten waits, and the others move on."""
+    """With three hits per step, a ball bounces three times and then rests; others move on."""
     room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))]
-    world = World([*room, Body(DISC, (1, 0), (10, 0), mass=1)], max_hits=3)
+    world = World([*room, Body(DISC, (1, 0), (10, 1), mass=1)], max_hits=3)
     slow = world.add(Body(DISC, (0.5, 5), (0.125, 0), mass=1))
     with pytest.warns(HitLimitWarning):
         hits = world.step(1.0)
     # The wall's distance from the middle, then back and forth.
-    assert hits["time"] == pytest.approx([0.05, 0.15, 0.25], rel=1e-13)
-    assert world.positions[2].tolist() == [1.5, 0]
+    assert hits["time"] == pytest.approx([0.05, 0.15, 0.25, 0.35], rel=1e-13)
+    assert hits["impulse"].tolist() == [-20, -20, -20, -10]
+    assert world.positions[2] == pytest.approx([0.5, 1], rel=1e-14)
+    assert world.velocities[2].tolist() == [0, 1]
     assert world.positions[slow].tolist() == [0.625, 5]
-    with pytest.warns(HitLimitWarning):
-        hits = world.step(1.0)
-    assert hits["time"] == pytest.approx([1.1, 1.2, 1.3], rel=1e-13)
-    assert world.capped == 2
+    # In the next step it bounces again.
+    world.place(2, velocity=(2, 0))
+    assert world.step(0.75)["impulse"].tolist() == [-4]
+    assert world.capped == 1
 
 
-def test_a_body_passes_a_capped_one_and_is_relaxed_later() -> None:
-    """One waits at the left wall from 0.7 on; the other passes at 1.5, as the step ends."""
-    room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (3, 0))]
-    world = World([*room, Body(DISC, (1.5, 0), (10, 0), mass=1)], max_hits=4)
-    other = world.add(Body(DISC, (0.75, -3), (0, 2), mass=1))
-    with pytest.warns(HitLimitWarning):
-        assert len(world.step(1.5)) == 4
-    assert world.positions[2:].tolist() == [[0.5, 0], [0.75, 0]]
-    world.place(2, velocity=(0, 0))
-    world.place(other, velocity=(0, 0))
-    world.step(1.0)
-    assert deepest_overlap(bodies_of(world)) <= 1e-12
-    assert world.positions[2:].ravel() == pytest.approx([0.5, 0, 1.5, 0], abs=1e-11)
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_a_capped_body_is_solid(restitution: float) -> None:
+    """A crate that had used up its hits was left where it stood, and a fast ball went through it.
+
+    Whatever comes of the crates: nothing passes through the pile or the floor.
+    """
+    crates = [Body(AxisAlignedRectangle(1, 1), (0, 0.5 + y), (0, -1), 1, 0.5) for y in range(3)]
+    for y in (0.6, 1.4, 2.2):
+        world = World([FLOOR, *crates], max_hits=3)
+        ball = world.add(Body(Particle(0.25), (-20, y), (40, 0), 1, restitution))
+        with pytest.warns(HitLimitWarning):
+            hits = world.step(1.0)
+        x, places = world.positions[ball, 0], world.positions[1:4]
+        assert ball in hits["b"]
+        assert x < places[abs(places[:, 1] - y).argmin(), 0] - 0.5
+        assert world.velocities[ball, 0] <= world.velocities[1:4, 0].max()
+        assert deepest_overlap(bodies_of(world)) < 1e-12
+        assert places[:, 1].min() >= 0.5 - 1e-12
 
 
 def test_there_is_no_second_warning_without_new_hits() -> None:
@@ -270,6 +286,23 @@ def test_scales_do_not_matter(length: float, time: float) -> None:
     assert hits[["a", "b"]].tolist() == expected[["a", "b"]].tolist()
     np.testing.assert_allclose(hits["time"] / time, expected["time"], rtol=0, atol=1e-9)
     np.testing.assert_allclose(scaled.positions / length, plain.positions, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1e9, 1e75, 1e139])
+@pytest.mark.parametrize("restitution", [0.0, 0.9, 1.0])
+def test_a_crowd_ends_its_step_at_any_speed(speed: float, restitution: float) -> None:
+    """Squares of a group's speeds overflowed. A meeting came to nothing, and was due for ever."""
+    world = World(box_of(12, 10), max_hits=200)
+    for index in range(24):
+        place = (0.8 + index % 8 * 1.4, 0.6 + index // 8 * 1.5)
+        shape = SMALL_SHAPES[index % len(SMALL_SHAPES)]
+        world.add(Body(shape, place, (0.1, -0.2), 1.0 + index % 3, restitution))
+    world.place(10, velocity=(speed, 1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HitLimitWarning)
+        # Free, inert, crushed: a body has at most so many hits in each of these stages.
+        assert len(world.step(0.2)) <= 3 * 200 * 24
+    assert np.isfinite(world.velocities).all()
 
 
 extreme = st.one_of(

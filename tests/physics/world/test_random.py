@@ -24,6 +24,7 @@ from arkanoid.physics import (
     detect,
     time_of_impact,
 )
+from arkanoid.physics.world import setup
 from helpers.bodies import bodies_of, deepest_overlap
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -127,15 +128,33 @@ def test_the_hits_are_those_of_brute_force(seed: int, steps: int) -> None:
     assert deepest_overlap(bodies_of(world)) < 1e-9
 
 
-def test_the_giant_roams_and_the_grid_is_one() -> None:
-    """The comparison above is useful only if the broad phase has work to do."""
-    world = World(crowd(1))
-    assert len(world.step(1.5)) > 5
-    setup = world.built().setup
-    assert setup.traits["roams"].sum() == 1
-    assert setup.header.columns * setup.header.rows > 8
-    assert setup.header.heads > 0
-    assert setup.header.boundless >= 4
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("parts", [1, 7])
+def test_the_broad_phase_changes_no_bit(
+    seed: int, parts: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each crossing of a cell computed all times again, and rounded them differently.
+
+    Here every body is tested against every other one, in one step; and the broad phase is used, in
+    several steps. Sizes differ by a factor of 300, and the crowd flies far away.
+    """
+    rng = np.random.default_rng(seed)
+    bodies = crowd(seed, width=14.0, count=40)[4:]
+    bodies += [
+        Body(Particle(0.02), rng.uniform(16, 20, 2), rng.normal(size=2), mass=1) for _ in range(60)
+    ]
+    bodies.append(Body(AxisAlignedRectangle(300, 6), (0, -30), (0, 4), mass=1e3))
+    followed = World(bodies)
+    hits = [followed.step(28.0 / parts) for _ in range(parts)]
+    monkeypatch.setattr(setup, "_have_bounds", lambda sizes: np.zeros(len(sizes), bool))
+    tested = World(bodies)
+    expected = tested.step(28.0)
+    assert followed.built().setup.traits["boundless"].sum() == 0
+    assert tested.built().setup.traits["boundless"].all()
+    assert len(expected) > 50
+    assert np.concatenate(hits).tobytes() == expected.tobytes()
+    if parts == 1:
+        assert followed.positions.tobytes() == tested.positions.tobytes()
 
 
 @settings(max_examples=25, deadline=None)

@@ -250,18 +250,35 @@ def test_a_body_put_inside_enters_once_as_the_step_begins(dt: float) -> None:
     assert len(world.step(dt)) == 0
 
 
-def test_a_placed_body_is_in_no_sensor_until_a_step() -> None:
+def test_a_body_placed_elsewhere_leaves_as_the_next_step_begins() -> None:
+    """It was forgotten, without an event."""
     world = with_sensor(SQUARE, Body(DISC, (0, 0), (1, 0), mass=1))
     assert len(world.step(0.25)) == 1
     world.place(1, (9, 9))
-    assert len(world.step(0.25)) == 0
+    (left,) = world.step(0.25)
+    assert (left["kind"], left["time"], left["a"], left["b"]) == (END, 0.25, 0, 1)
+    assert left["normal"].tolist() == [0, 0]
+    assert left["point"].tolist() == [9, 9]
     world.place(1, (0, 0))
     assert story(world.step(0.25)) == [(BEGIN, 0, 1)]
-    world.place(1, velocity=(0, 1))
-    assert len(world.step(0.25)) == 0
+    world.place(0, (5, 5))  # the sensor, which is static
+    assert story(world.step(0.25)) == [(END, 0, 1)]
     world.place(0, (0, 0))
     assert story(world.step(0.25)) == [(BEGIN, 0, 1)]
-    assert story(world.step(10.0)) == [(END, 0, 1)]
+
+
+@pytest.mark.parametrize("continuous", [True, False])
+def test_a_body_placed_inside_in_every_frame_enters_once(continuous: bool) -> None:
+    """It entered in each frame: it counted as outside each time that its position was written."""
+    world = World(continuous=continuous)
+    world.add(Body(SQUARE), sensor=True)
+    world.add(Body(DISC, (-3, 0), (1, 0), mass=1))
+    kinds = []
+    for frame in range(13):
+        world.place(1, (-3 + frame / 2, 0))
+        kinds += [(frame, int(hit["kind"])) for hit in world.step(0.125)]
+    # It is inside between -1.5 and 1.5, and moves by 1/8 after it was placed.
+    assert kinds == [(3, BEGIN), (9, END)]
 
 
 def test_a_ball_that_is_served_again_is_noticed_again() -> None:
@@ -275,9 +292,9 @@ def test_a_ball_that_is_served_again_is_noticed_again() -> None:
     batch.positions[1, 0] = (-9, 0)
     batch.positions[2, 0] = (90, 0)
     hits = batch.step(10.0)
-    assert hits["world"].tolist() == [0, 1]
-    assert hits["kind"].tolist() == [END, BEGIN]
-    assert hits["time"] == pytest.approx([3.5, 9.5])
+    assert hits["world"].tolist() == [0, 1, 1, 2]
+    assert hits["kind"].tolist() == [END, END, BEGIN, END]
+    assert hits["time"] == pytest.approx([3.5, 2.0, 9.5, 2.0])
 
 
 def test_a_body_relaxed_out_of_a_sensor_leaves_as_the_step_begins() -> None:

@@ -1,6 +1,7 @@
 """Worlds as data: from a snapshot, a pickle or a copy, a world continues bit for bit."""
 
 import copy
+import math
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +19,8 @@ from arkanoid.physics import (
     World,
     WorldBatch,
 )
-from arkanoid.physics.world.records import Plan
+from arkanoid.physics.world.lookup.inside import inside_blocks
+from arkanoid.physics.world.records import Course
 from helpers.bodies import SMALL_SHAPES, room
 from helpers.processes import run_python
 from hypothesis import given, settings
@@ -94,8 +96,8 @@ def test_snapshots_hold_which_bodies_are_inside_sensors() -> None:
 
 
 def test_a_snapshot_after_many_hits_in_one_step() -> None:
-    world = World([Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))])
-    world.add(Body(Particle(0.5), (1, 0), (1000, 1), mass=1))
+    room = [Body(AxisAlignedHalfPlane("+x")), Body(AxisAlignedHalfPlane("-x"), (2, 0))]
+    world = World([*room, Body(Particle(0.5), (1, 0), (1000, 1), mass=1)], max_hits=2000)
     kept = world.snapshot()
     first = world.step(1.0)
     assert len(first) == 1000
@@ -130,7 +132,7 @@ def test_a_corrupt_snapshot_is_refused() -> None:
         (b"arkanoid-world", ValueError, "no snapshot of worlds"),
         (b"x" * len(kept), ValueError, "no snapshot of worlds"),
         (changed(kept, 3), ValueError, "no snapshot of worlds"),
-        (changed(kept, 8), ValueError, "of format 0, and this release reads format 1"),
+        (changed(kept, 8), ValueError, "of format 3, and this release reads format 2"),
         (changed(kept, 10), ValueError, "corrupt: some of its bytes have changed"),
         (changed(kept, 14), ValueError, "corrupt: .* bytes of .* are there"),
         (kept[:-1], ValueError, "corrupt: .* bytes of .* are there"),
@@ -266,20 +268,34 @@ def test_a_hundred_thousand_forged_snapshots_do_no_harm(seed: int) -> None:
     run_python(FORGE, "20000", str(seed), warnings="default", changes=changes, timeout=3600.0)
 
 
-@pytest.mark.parametrize("part", ["time", "at", "column", "partner", "next", "kind"])
-def test_what_no_step_leaves_is_refused_and_changes_nothing(part: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("at", 1000.0), ("at_low", 1.0), ("at", math.nan), ("fresh", 2), ("fresh", -1)],
+)
+def test_what_no_step_leaves_is_refused_and_changes_nothing(name: str, value: float) -> None:
     world = make_world(0)
     world.step(0.25)
     before = world.snapshot()
     built = world.built()
-    header = built.setup.header
-    end = int(header.plans_at) + Plan.itemsize * int(header.movers)
-    plans = built.states[0, int(header.plans_at) : end].view(Plan)
     # Far from what it may be.
-    plans[part] = 1000
+    built.setup.records(built.states, "motions", Course)[name] = value
     forged = world.snapshot()
     world.restore(before)
-    with pytest.raises(ValueError, match="world 0 can't have such"):
+    with pytest.raises(ValueError, match="no world can have such courses"):
+        world.restore(forged)
+    assert world.snapshot() == before
+
+
+@pytest.mark.parametrize("pair", [(5, 6), (17, 17), (17, 18), (18, 17)])
+def test_pairs_inside_sensors_that_cannot_be_are_refused(pair: tuple[int, int]) -> None:
+    """Only 17 and 18 are sensors, and they do not notice each other."""
+    world = make_world(0)
+    before = world.snapshot()
+    built = world.built()
+    built.stepper.insides = inside_blocks([np.array([pair])], len(world), has_sensors=True)
+    forged = world.snapshot()
+    world.restore(before)
+    with pytest.raises(ValueError, match="no world can have such bodies inside sensors"):
         world.restore(forged)
     assert world.snapshot() == before
 

@@ -1,0 +1,103 @@
+"""Seams: where the face of one static body ends, and the ground goes on in another one.
+
+A corner that comes down on a seam meets the corners of two tiles. Each tile alone cannot tell
+whether it is an end of the ground, at which a body may turn or pass, or a seam, which nobody should
+feel. So the world asks who covers the place just beyond the end, and just below the face. If anyone
+does, the face counts up to its end and a little further, on either side of the seam: no point of it
+is without an owner.
+"""
+
+import math
+
+from ..kernels import kernel
+from ..shapes.records import Edges, Shapes
+from .convex_convex import lowest
+from .touching import closing_speed, margin_along
+from .touching_point import support_feature
+
+NO_END = (math.inf, 0.0, 0.0)
+
+
+@kernel
+def lies_along(shapes: Shapes, edges: Edges, index: int, x: float, y: float) -> bool:
+    """Return whether a normal (x, y) is that of one of a shape's faces, to the bit."""
+    shape = shapes[index]
+    for number in range(shape.first, shape.first + shape.count):
+        edge = edges[number]
+        if edge.normal_x * y == edge.normal_y * x:
+            return True
+    return False
+
+
+@kernel
+def covers(shapes: Shapes, edges: Edges, index: int, x: float, y: float) -> bool:
+    """Return whether a polygon, or a half-plane, has the point (x, y) inside."""
+    shape = shapes[index]
+    for number in range(shape.first, shape.first + shape.count):
+        edge = edges[number]
+        if edge.normal_x * x + edge.normal_y * y >= edge.offset:
+            return False
+    return bool(shape.count > 0)
+
+
+@kernel
+def time_at_end(
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    number: int,
+    side: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[float, float, float]:
+    """Return (time, x, y): when shape a meets a face of b just at its end, and what lies beyond.
+
+    Args:
+        shapes, edges, a, b: the shapes.
+        number: the face, an index of ``edges``.
+        side: the end, 1 for the face's end and -1 for its start.
+        dx, dy, vx, vy: b's place and velocity, relative to a.
+        margin_x, margin_y: as of `touching`.
+
+    Returns:
+        The time is inf if a does not meet the face, or not with a corner or a disc at its end: it
+        meets the end, or it passes the end while it touches the face's line, within the margin. The
+        point, relative to b, is as far beyond the end and below the face as rounding may hide.
+    """
+    edge = edges[number]
+    x, y = edge.normal_x, edge.normal_y
+    margin = margin_along(x, y, margin_x, margin_y)
+    closing = closing_speed(-x, -y, vx, vy, margin)
+    if closing <= 0.0 or not (edge.has_end if side > 0 else edge.has_start):
+        return NO_END
+    if shapes[a].count > 0 and lowest(shapes[a], edges, x, y) == -math.inf:
+        return NO_END
+    height, low, high = support_feature(shapes[a], edges, -x, -y)
+    gap = -(x * dx + y * dy) - height - edge.offset
+    aside = margin_along(-y, x, margin_x, margin_y)
+    if gap < -margin or high - low > aside:
+        return NO_END
+    end_x = edge.end_x if side > 0 else edge.start_x
+    end_y = edge.end_y if side > 0 else edge.start_y
+    # How far a is beyond the end, along the face's direction (-y, x), and how fast it goes there.
+    beyond = side * (-low - (x * (dy + end_y) - y * (dx + end_x)))
+    slide = side * (y * vx - x * vy)
+    time = max(gap, 0.0) / closing
+    place = beyond + slide * time
+    if place > 2.0 * aside:
+        # It comes to the end later, perhaps still within the margin.
+        time += place / -slide
+        if slide >= 0.0 or gap - closing * time < -margin:
+            return NO_END
+    elif place < -2.0 * (aside + max(slide, 0.0) / closing * margin):
+        return NO_END
+    return (
+        time,
+        end_x - side * aside * y - margin * x,
+        end_y + side * aside * x - margin * y,
+    )

@@ -1,0 +1,73 @@
+"""Whether two bodies that touch and approach hit each other, or rest or slide on each other."""
+
+from ...kernels import kernel
+from ...tolerances import MOST_RESTS, NO_APPROACH, SLIDE
+from ..records import CRUSHED, FREE, HELD
+from ..view import WorldView, motions_of, plans_of, progress_of, traits_of
+
+
+@kernel
+def stage_of(world: WorldView, slot: int) -> int:
+    """Return how far a body has used up its hits of this step: FREE for a static one (-1)."""
+    return FREE if slot < 0 else int(plans_of(world)[slot].stage)
+
+
+@kernel
+def inverse_mass_of(world: WorldView, body: int) -> float:
+    """Return a body's inverse mass for hits: 0 also if it is held where it is."""
+    trait = traits_of(world)[body]
+    return 0.0 if stage_of(world, trait.slot) >= HELD else float(trait.inverse_mass)
+
+
+@kernel
+def has_reached(world: WorldView, a: int, b: int, stage: int) -> bool:
+    """Return whether those of two bodies that have a mass have all reached a stage."""
+    traits = traits_of(world)
+    for body in (a, b):
+        if traits[body].inverse_mass > 0.0 and stage_of(world, traits[body].slot) < stage:
+            return False
+    return True
+
+
+@kernel
+def slowest_hit(world: WorldView, a: int, b: int) -> float:
+    """Return the speed of approach that rounding could make of the speeds of two bodies so far."""
+    speed = 0.0
+    for body in (a, b):
+        slot = traits_of(world)[body].slot
+        if slot >= 0:
+            speed += motions_of(world)[slot].speed
+    return NO_APPROACH * speed
+
+
+@kernel
+def passes_by(world: WorldView, a: int, b: int, closing: float) -> bool:
+    """Return whether two solid bodies that touch and approach do not hit each other.
+
+    They rest if they approach more slowly than rounding can tell. They slide by if they have come
+    to rest again and again, and are slow. And what has no room moves into what presses it, until
+    the step ends.
+
+    Args:
+        world, a, b: the bodies.
+        closing: the speed at which they approach, along the normal.
+    """
+    least = slowest_hit(world, a, b)
+    if closing <= least:
+        return True
+    if not progress_of(world).inert:
+        return False
+    if has_reached(world, a, b, CRUSHED):
+        return True
+    return bool(closing <= SLIDE / NO_APPROACH * least and _are_sliding(world, a, b))
+
+
+@kernel
+def _are_sliding(world: WorldView, a: int, b: int) -> bool:
+    """Return whether those of two bodies that have a mass have come to rest again and again."""
+    traits = traits_of(world)
+    for body in (a, b):
+        slot = traits[body].slot
+        if traits[body].inverse_mass > 0.0 and plans_of(world)[slot].rests < MOST_RESTS:
+            return False
+    return True
