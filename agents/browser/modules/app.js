@@ -90,6 +90,7 @@ class App {
   _picture(now) {
     const { part, stage, clock } = this;
     if (!part?.game) return;
+    stage.follow();
     const rate = this.arkanoid.manifest.rules.TICKS_PER_SECOND / part.game.config.frame_skip;
     clock.run(now, rate, () => {
       const more = part.tick();
@@ -140,6 +141,7 @@ class App {
     }
     addEventListener("blur", () => this.part?.leave());
     document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
+    addEventListener("pagehide", (event) => event.persisted || this._parts.play?.close());
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => this._drop(event));
     this.stage.listen({
