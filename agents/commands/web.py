@@ -2,6 +2,7 @@
 
 import argparse
 import webbrowser
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
@@ -111,5 +112,6 @@ def _serve(page: str, port: int, opens: bool) -> int:
         if opens:
             # Browsers for terminals keep the command waiting, and wait for the page themselves.
             Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
-        server.serve_forever()
+        with suppress(KeyboardInterrupt):  # that is how one ends it
+            server.serve_forever()
     return 0

@@ -200,9 +200,20 @@ function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const [code, manifest, facts] = await Promise.all([bytesOf("code"), jsonOf("manifest"), jsonOf("facts")]);
-const app = new App(await loadArkanoid(code, manifest), facts);
-await app.show(partOf(location.hash));
-app.run();
-/** For tests, and for whoever is curious. */
-globalThis.arkanoid = app;
+async function begin() {
+  const names = ["manifest", "facts"];
+  const [code, manifest, facts] = await Promise.all([bytesOf("code"), ...names.map(jsonOf)]);
+  const app = new App(await loadArkanoid(code, manifest), facts);
+  await app.show(partOf(location.hash));
+  app.run();
+  /** For tests, and for whoever is curious. */
+  globalThis.arkanoid = app;
+}
+
+try {
+  await begin();
+} catch (error) {
+  document.getElementById("notice").textContent =
+    "The game does not start. The page is not complete, or its site forbids WebAssembly.";
+  throw error;
+}

@@ -56,6 +56,7 @@ def address(folder: Path) -> Iterator[str]:
     yield process.stdout.readline().split()[0]
     process.send_signal(signal.SIGTERM if os.name == "nt" else signal.SIGINT)
     process.communicate(timeout=60)
+    assert os.name == "nt" or process.returncode == 0  # nothing went wrong
 
 
 @pytest.fixture
