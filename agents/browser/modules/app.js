@@ -201,6 +201,7 @@ function write(element, text) {
 }
 
 async function begin() {
+  if (!document.getElementById("end")) throw new Error("the page has no end");
   const names = ["manifest", "facts"];
   const [code, manifest, facts] = await Promise.all([bytesOf("code"), ...names.map(jsonOf)]);
   const app = new App(await loadArkanoid(code, manifest), facts);

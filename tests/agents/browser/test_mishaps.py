@@ -173,11 +173,12 @@ def test_fast_games_are_not_loud(page: Any) -> None:
     assert 3 <= began <= 30
 
 
-def test_a_page_that_is_cut_says_so(browser: Any, file: Path, tmp_path: Path) -> None:
-    """It stayed empty, as after a download that was broken off."""
+@pytest.mark.parametrize("last", [b'id="data-facts"', b"</script>"])
+def test_a_page_that_is_cut_says_so(browser: Any, file: Path, tmp_path: Path, last: bytes) -> None:
+    """It stayed empty, as after a download that was broken off, or lacked an agent."""
     cut = tmp_path / "cut.html"
     text = file.read_bytes()
-    cut.write_bytes(text[: text.rindex(b'id="data-facts"')])
+    cut.write_bytes(text[: text.rindex(last)])
     page = browser.new_page()
     page.goto(cut.as_uri())
     page.get_by_text("The game does not start.").wait_for()
