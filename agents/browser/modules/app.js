@@ -141,9 +141,9 @@ class App {
     }
     addEventListener("blur", () => this.part?.leave());
     document.addEventListener("visibilitychange", () => document.hidden && this.part?.leave());
-    addEventListener("pagehide", (event) => event.persisted || this._parts.play?.close());
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => this._drop(event));
+    addEventListener("pagehide", (event) => event.persisted || this._parts.play?.close());
     this.stage.listen({
       press: (key) => this.part?.press(key),
       release: (key) => this.part?.release(key),
