@@ -2,9 +2,12 @@
 
 import argparse
 import webbrowser
+from contextlib import suppress
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING
 
+from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
 from ..experiment.files import cause, check_folder
 from ..experiment.packaged import packaged_agents
@@ -46,7 +49,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     if out is None:
         return _serve(page, arguments.port or 0, not arguments.no_open)
     try:
-        out.write_text(page, encoding="utf-8")
+        write_atomically(out, page.encode())
     except OSError as error:
         raise SettingsError(f"{out}: cannot be written: {cause(error)}") from None
     print(out)
@@ -106,6 +109,8 @@ def _serve(page: str, port: int, opens: bool) -> int:
     with server:
         print(f"{server.address} (Ctrl-C ends it)", flush=True)
         if opens:
-            webbrowser.open(server.address)
-        server.serve_forever()
+            # Browsers for terminals keep the command waiting, and wait for the page themselves.
+            Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
+        with suppress(KeyboardInterrupt):  # that is how one ends it
+            server.serve_forever()
     return 0

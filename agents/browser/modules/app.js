@@ -95,6 +95,7 @@ class App {
   _picture(now) {
     const { part, stage, clock } = this;
     if (!part?.game) return;
+    stage.follow();
     const rate = this.arkanoid.manifest.rules.TICKS_PER_SECOND / part.game.config.frame_skip;
     clock.run(now, rate, () => {
       const more = part.tick();
@@ -148,8 +149,11 @@ class App {
       };
     }
     addEventListener("blur", () => this.part?.loseFocus?.());
+    const hide = () => document.hidden && this.part?.loseFocus?.();
+    document.addEventListener("visibilitychange", hide);
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => this._drop(event));
+    addEventListener("pagehide", (event) => event.persisted || this._parts.play?.close());
     this.stage.listen({
       press: (key) => this.part?.press(key),
       release: (key) => this.part?.release(key),
@@ -208,10 +212,21 @@ function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const parts = [bytesOf("code"), jsonOf("manifest"), jsonOf("facts")];
-const [code, manifest, facts] = await Promise.all(parts);
-const app = new App(await loadArkanoid(code, manifest), facts);
-await app.show(partOf(location.hash));
-app.run();
-/** For tests, and for whoever is curious. */
-globalThis.arkanoid = app;
+async function begin() {
+  if (!document.getElementById("end")) throw new Error("the page has no end");
+  const names = ["manifest", "facts"];
+  const [code, manifest, facts] = await Promise.all([bytesOf("code"), ...names.map(jsonOf)]);
+  const app = new App(await loadArkanoid(code, manifest), facts);
+  await app.show(partOf(location.hash));
+  app.run();
+  /** For tests, and for whoever is curious. */
+  globalThis.arkanoid = app;
+}
+
+try {
+  await begin();
+} catch (error) {
+  document.getElementById("notice").textContent =
+    "The game does not start. The page is not complete, or its site forbids WebAssembly.";
+  throw error;
+}

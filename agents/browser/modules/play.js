@@ -189,6 +189,11 @@ export class Play {
     if (this._begun && this.phase !== "opening") this._keepScore();
   }
 
+  /** Keep the score of an unfinished game: the page goes. */
+  close() {
+    this._keepUnfinished();
+  }
+
   get _begun() {
     const { game } = this;
     return game && game.world.decisions > 0 && !game.over;

@@ -1,10 +1,13 @@
 // Sound: a few tones, made from their formulas. Which there are, and when, Python's sources say.
 
+const APART = 1 / 60; // seconds between two of the same tones, at least
+
 /** Plays tones. It is off at first. */
 export class Speaker {
   /** @param {object} hearing the loudness, the tones, and what they stand for */
   constructor(hearing) {
     this._hearing = hearing;
+    this._began = {}; // when tones began last, by their names
     this.on = false;
   }
 
@@ -54,6 +57,11 @@ export class Speaker {
     const { loudness, attack, tones } = this._hearing;
     const [begin, end, seconds] = tones[tone];
     const start = this._context.currentTime;
+    // Time stands still where the system took the sound away: what is played then sounds later, all
+    // at once. Fast games would have hundreds of tones in a picture.
+    if (this._context.state !== "running") this._context.resume().catch(() => {});
+    if (this._context.state !== "running" || start - this._began[tone] < APART) return;
+    this._began[tone] = start;
     const volume = this._context.createGain();
     volume.gain.setValueAtTime(0, start);
     volume.gain.linearRampToValueAtTime(loudness, start + attack);

@@ -43,6 +43,7 @@ export class Stage {
   /** Take the size that fits: whole pixels of the screen per brick. */
   fit() {
     const density = devicePixelRatio || 1;
+    this._density = devicePixelRatio;
     const [width, height] = this._room();
     const { width: columns, height: rows } = this._view;
     const fitting = Math.floor(Math.min(width / columns, height / rows) * density);
@@ -58,6 +59,11 @@ export class Stage {
     const wide = this.canvas.width / density + PANEL + 32;
     document.documentElement.style.setProperty("--wide", NARROW.matches ? "none" : `${wide}px`);
     this.stale = true;
+  }
+
+  /** Fit where the window has gone to another screen: browsers do not tell of it. */
+  follow() {
+    if (devicePixelRatio !== this._density) this.fit();
   }
 
   /** @returns {[number, number]} the CSS pixels that the picture may take */
@@ -164,7 +170,8 @@ export class Stage {
     const up = (event) => {
       const began = touches.get(event.pointerId);
       touches.delete(event.pointerId);
-      if (began && touches.size === 0 && isTap(began, event)) listener.press("fire");
+      const ended = event.type === "pointerup";
+      if (ended && began && touches.size === 0 && isTap(began, event)) listener.press("fire");
       listener.release("fire");
     };
     for (const area of [this.frame, this._strip]) {

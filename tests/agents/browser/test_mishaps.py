@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from helpers.browser import DESKTOP, visit, wait_until
+from helpers.browser import DESKTOP, PHONE, visit, wait_until
 
 TICKS_OF = """async ([hertz, seconds]) => {
   const { Clock } = await import("arkanoid/clock");
@@ -107,3 +107,79 @@ def test_buttons_of_the_editor_by_the_space_key(page: Any) -> None:
     page.get_by_role("button", name="Clear").focus()
     page.keyboard.press("Space")
     assert set(page.evaluate("arkanoid.part._level.bricks")) == {"."}
+
+
+def test_the_score_of_a_game_that_is_left(page: Any) -> None:
+    """It was lost with the page; windows keep it."""
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 0")
+    page.keyboard.press("p")
+    page.evaluate("() => { arkanoid.part.game.world.score = 130; }")
+    page.reload()
+    wait_until(page, "part?.phase === 'ready'")
+    assert page.locator("#scores li").all_text_contents()[0].startswith("1.130round 1")
+
+
+def test_the_picture_is_in_the_middle_of_a_full_screen(page: Any) -> None:
+    """It was in the corner."""
+    page.keyboard.press("f")
+    wait_until(page, "document.fullscreenElement && arkanoid.stage.canvas.clientHeight > 700")
+    size = page.viewport_size
+    boxes = [page.locator(name).bounding_box() for name in ("#picture", "#marks")]
+    assert boxes[0] == boxes[1]
+    assert boxes[0]["x"] + boxes[0]["width"] / 2 == pytest.approx(size["width"] / 2, abs=1)
+    assert boxes[0]["y"] + boxes[0]["height"] / 2 == pytest.approx(size["height"] / 2, abs=1)
+
+
+def test_a_window_that_goes_to_a_screen_with_more_pixels(page: Any) -> None:
+    """Its picture was blurred: browsers tell of no new size."""
+    before = page.evaluate("arkanoid.stage.scale")
+    for density in (2, 3):
+        page.context.new_cdp_session(page).send(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": 1280, "height": 800, "deviceScaleFactor": density, "mobile": False},
+        )
+        wait_until(page, f"arkanoid.stage.scale >= {min(120, density * before)}")
+
+
+def test_a_touch_that_the_system_takes_is_no_tap(browser: Any, file: Path) -> None:
+    """It started the game: a gesture of the system begins as a touch, and is cancelled."""
+    with visit(browser, file.as_uri(), **PHONE) as page:
+        touch = page.context.new_cdp_session(page)
+        box = page.locator("#picture").bounding_box()
+        point = {"x": box["x"] + 50, "y": box["y"] + 50}
+        for kind, points in (("touchStart", [point]), ("touchCancel", [])):
+            touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        assert page.evaluate("arkanoid.part.phase") == "ready"
+        page.locator("#picture").tap()
+        wait_until(page, "part.phase === 'playing'")
+
+
+def test_fast_games_are_not_loud(page: Any) -> None:
+    """Hundreds of tones began at once where a picture had hundreds of ticks."""
+    began = page.evaluate(
+        """async () => {
+          const { speaker } = arkanoid;
+          speaker.switch();
+          const wait = () => new Promise((go) => setTimeout(go, 20));
+          while (speaker._context.state !== "running") await wait();
+          let began = 0;
+          const { createGain } = AudioContext.prototype;
+          speaker._context.createGain = function () { began += 1; return createGain.call(this); };
+          for (let time = 0; time < 500; time += 1) speaker._play("BRICK");
+          return began;
+        }"""
+    )
+    assert 3 <= began <= 30
+
+
+@pytest.mark.parametrize("last", [b'id="data-facts"', b"</script>"])
+def test_a_page_that_is_cut_says_so(browser: Any, file: Path, tmp_path: Path, last: bytes) -> None:
+    """It stayed empty, as after a download that was broken off, or lacked an agent."""
+    cut = tmp_path / "cut.html"
+    text = file.read_bytes()
+    cut.write_bytes(text[: text.rindex(last)])
+    page = browser.new_page()
+    page.goto(cut.as_uri())
+    page.get_by_text("The game does not start.").wait_for()
+    page.close()

@@ -1,9 +1,12 @@
 """Watching agents in a real browser, and the command that serves the page."""
 
 import os
+import shlex
 import shutil
 import signal
 import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,7 +19,7 @@ from arkanoid.agents.cli import main
 from arkanoid.agents.experiment.runs import ModelFile
 from arkanoid.agents.show.page import as_html
 from arkanoid.agents.show.report import show_alive
-from helpers.browser import DESKTOP, visit, wait_until
+from helpers.browser import DESKTOP, PATIENCE, visit, wait_until
 from helpers.processes import ARKANOID
 from helpers.runs import facts_with, packaged_copy
 
@@ -57,6 +60,7 @@ def address(folder: Path) -> Iterator[str]:
     yield process.stdout.readline().split()[0]
     process.send_signal(signal.SIGTERM if os.name == "nt" else signal.SIGINT)
     process.communicate(timeout=60)
+    assert os.name == "nt" or process.returncode == 0  # nothing went wrong
 
 
 @pytest.fixture
@@ -70,6 +74,30 @@ def test_only_the_page_is_served(address: str) -> None:
         assert answer.read().startswith(b"<!doctype html>")
     with pytest.raises(HTTPError, match="404"):
         urlopen(f"{address}etc/passwd")
+
+
+def test_a_browser_that_keeps_the_command_waiting(tmp_path: Path) -> None:
+    """Those for terminals do. The page was served only when they had given up."""
+    script, loaded = tmp_path / "browser.py", tmp_path / "loaded.html"
+    script.write_text(
+        "import sys, pathlib, urllib.request as request\n"
+        "page = request.urlopen(sys.argv[1], timeout=60).read()\n"
+        f"pathlib.Path({str(loaded)!r}).write_bytes(page)\n",
+        encoding="utf-8",
+    )
+    process = subprocess.Popen(
+        [*ARKANOID, "web"],
+        stdout=subprocess.PIPE,
+        env=os.environ | {"BROWSER": shlex.join([sys.executable, str(script), "%s"])},
+    )
+    try:
+        deadline = time.monotonic() + PATIENCE
+        while not loaded.exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        assert loaded.exists()
+    finally:
+        process.kill()
+        process.communicate()
 
 
 @pytest.mark.parametrize("name", ["full", "lite"])
