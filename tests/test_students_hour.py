@@ -129,7 +129,11 @@ def test_an_hour(student: Student) -> None:
     assert "mine " in said
     # Nothing opens here; but what it says instead does its work.
     said = student.types(f"{START} watch {run}", status=2)
-    student.types(f"{said.partition('a film needs none: ')[2].strip()} --seconds 0.2")
+    film, _, browser = said.partition("a film needs none: ")[2].partition("; nor does a browser: ")
+    student.types(f"{film} --seconds 0.2")
+    page = browser.replace(" --no-open", "").strip()
+    student.types(f"{page} --out game.html")
+    assert (here / "game.html").is_file()
     assert (here / "game.gif").is_file()
 
     # A model by itself.
