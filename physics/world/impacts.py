@@ -86,14 +86,20 @@ def _is_sensed(world: WorldView, slot: int) -> bool:
 
 
 @kernel
+def _planned_pair(world: WorldView, slot: int) -> tuple[int, int, float, float]:
+    """Return (a, b, normal_x, normal_y) of what a body plans to meet; a is the lower index."""
+    plan = plans_of(world)[slot]
+    own = moving_of(world)[slot]
+    if own > plan.partner:  # Either of the two may have planned it. No bit depends on which.
+        return plan.partner, own, -plan.normal_x, -plan.normal_y
+    return own, plan.partner, plan.normal_x, plan.normal_y
+
+
+@kernel
 def _enter(world: WorldView, hits: Hits, count: int, world_index: int, slot: int) -> int:
     """Let a body enter a sensor, or a sensor meet it; return how many events there are."""
-    plan = plans_of(world)[slot]
-    a, b = moving_of(world)[slot], plan.partner
-    now, now_low = plan.time, plan.time_low
-    normal_x, normal_y = plan.normal_x, plan.normal_y
-    if a > b:  # Either of the two may have planned it. No bit depends on which.
-        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
+    a, b, normal_x, normal_y = _planned_pair(world, slot)
+    now, now_low = plans_of(world)[slot].time, plans_of(world)[slot].time_low
     # If both move, both may have planned it: the second one finds it done.
     if not is_inside(world, traits_of(world)[a], a, traits_of(world)[b], b):
         count = enter_sensor(
@@ -106,12 +112,8 @@ def _enter(world: WorldView, hits: Hits, count: int, world_index: int, slot: int
 @kernel
 def _meet(world: WorldView, hits: Hits, count: int, world_index: int, slot: int) -> int:
     """Let a body meet its partner, as it planned; return how many hits there are."""
-    plan = plans_of(world)[slot]
-    a, b = moving_of(world)[slot], plan.partner
-    now, now_low = plan.time, plan.time_low
-    normal_x, normal_y = plan.normal_x, plan.normal_y
-    if a > b:  # Either of the two may have planned it. No bit depends on which.
-        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
+    a, b, normal_x, normal_y = _planned_pair(world, slot)
+    now, now_low = plans_of(world)[slot].time, plans_of(world)[slot].time_low
     count = leave_sensors(world, hits, count, world_index, a, now, now_low)
     count = leave_sensors(world, hits, count, world_index, b, now, now_low)
     for body in (a, b):
