@@ -14,12 +14,12 @@ class BrowserAgent(NamedTuple):
     Attributes:
         name: shown, and unique on the page.
         config: of the game that it plays.
-        network: the file of `portable_network`.
+        network: the file of `portable_network`; None if the page asks its server for it.
     """
 
     name: str
     config: Config
-    network: bytes
+    network: bytes | None
 
 
 def browser_agent(model: ModelFile, experiment: Experiment) -> BrowserAgent:

@@ -8,7 +8,7 @@ import json
 import re
 import zlib
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from importlib import resources
 from typing import Any
@@ -37,26 +37,33 @@ _PREFIX = "arkanoid/"
 _HERE = resources.files(str(__package__))
 
 
-def make_page(agents: Sequence[BrowserAgent], opens: str = "play") -> str:
+def make_page(
+    agents: Sequence[BrowserAgent],
+    opens: str = "play",
+    run: Mapping[str, Any] | None = None,
+    asked: Mapping[str, Any] | None = None,
+) -> str:
     """Return the page, as HTML.
 
     Args:
         agents: which can be watched, the first one at first.
         opens: which of its parts is shown where the address names none: ``"watch"``, say.
+        run: which the first agent belongs to, as `FollowedRun.news` tells of it; None for none.
+        asked: the levels that are watched at first: their ``title``, and in ``starts`` how a game
+            of each begins, for `Game.reset`.
 
     Raises:
         ImportError: there is no linker for WebAssembly.
     """
     games = {name: game for name, game in browser_games().items() if name in _GAMES}
     shown = [{"name": agent.name, "game": _add_game(games, agent)} for agent in agents]
-    facts = page_facts()
-    facts["agents"] = shown
+    facts = page_facts() | {"agents": shown, "run": run, "asked": asked}
     data = {
         "code": game_module(),
         "manifest": _json(make_manifest(games)),
         "facts": _json(facts),
     }
-    data |= {f"agent-{agent.name}": agent.network for agent in agents}
+    data |= {f"agent-{agent.name}": agent.network for agent in agents if agent.network}
     return _fill(
         _read("index.html"),
         {

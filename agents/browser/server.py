@@ -1,22 +1,32 @@
-"""A server of one page, for browsers on this computer."""
+"""A server of one page, for browsers on this computer; and of the run that the page follows."""
 
+import json
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
+
+from .following import FollowedRun
 
 HOST = "127.0.0.1"
 # Nothing of another place is loaded, whatever the page's data say.
 _POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data:; "
-    "style-src 'unsafe-inline'; img-src data: blob:; form-action 'none'; frame-ancestors 'self'"
+    "style-src 'unsafe-inline'; img-src data: blob:; connect-src 'self'; "
+    "form-action 'none'; frame-ancestors 'self'"
 )
 
 
+# Where the page finds what its run says by now, and the latest agent: see `FollowedRun`.
+NEWS = "/run.json"
+NETWORK = "/agent"
+
+
 class PageServer(ThreadingHTTPServer):
-    """Serves a page under ``/`` to this computer only.
+    """Serves a page under ``/`` to this computer only, and beside it a run, if there is one.
 
     Args:
         page: HTML.
         port: 0 for any that is free.
+        run: which the page follows.
 
     Raises:
         OSError: the port is taken, or may not be used.
@@ -24,23 +34,40 @@ class PageServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, page: str, port: int) -> None:
-        self.content = page.encode()
+    def __init__(self, page: str, port: int, run: FollowedRun | None = None) -> None:
+        self._page = page.encode()
+        self._run = run
         super().__init__((HOST, port), _Handler)
 
     @property
     def address(self) -> str:
         """What a browser is given."""
-        return f"http://{HOST}:{self.server_address[1]}/"
+        return f"http://{HOST}:{self.port}/"
+
+    @property
+    def port(self) -> int:
+        """Where it is served."""
+        return int(self.server_address[1])
+
+    def find(self, place: str) -> tuple[str, bytes] | None:
+        """Return the type and the content of what is served at a place; None if nothing is."""
+        if place == "/":
+            return "text/html; charset=utf-8", self._page
+        if self._run is None:
+            return None
+        if place == NEWS:
+            return "application/json", json.dumps(self._run.news()).encode()
+        network = self._run.network() if place == NETWORK else None
+        return None if network is None else ("application/octet-stream", network)
 
 
 class _Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
-        """Send the page."""
+        """Send what is asked for."""
         self._send(with_content=True)
 
     def do_HEAD(self) -> None:
-        """Send what would stand before the page."""
+        """Send what would stand before it."""
         self._send(with_content=False)
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002
@@ -48,12 +75,13 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _send(self, with_content: bool) -> None:
         assert isinstance(self.server, PageServer)
-        content = self.server.content
-        if self.path.partition("?")[0] != "/":
+        found = self.server.find(self.path.partition("?")[0])
+        if found is None:
             self.send_error(404)
             return
+        kind, content = found
         self.send_response(200)
-        self.send_header("Content-Type", "text/html; charset=utf-8")
+        self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))
         self.send_header("Content-Security-Policy", _POLICY)
         self.send_header("Cache-Control", "no-store")

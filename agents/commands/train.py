@@ -101,6 +101,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         if source is not None:
             inherit(folder, source, experiment)
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
+    print(f"follow   {arkanoid('watch', folder.path, '--web')}", flush=True)
     with folder.locked():
         if resumed:
             folder.check_resumable()

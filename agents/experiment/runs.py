@@ -27,11 +27,13 @@ from .settings import Experiment
 _PACKAGE = __name__.partition(".")[0]
 # What decides the spaces of an environment, and so a network's inputs and outputs.
 _INTERFACE = ("observation", "landing", "size", "grey", "stack", "channels", "actions")
-# How a run has ended that can be resumed.
+# How a run has ended: with its budget, or so that it can be resumed. Validation has other reasons.
+FINISHED = "finished"
 UNFINISHED = "unfinished"
 INTERRUPTED = "interrupted"
 # A run's notes take about a thousand bytes, and eighty for each session.
 _LARGEST_NOTES = 2**20
+_A_LOOK = 1.0  # second
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,8 @@ class RunFolder:
         """
         from filelock import FileLock, Timeout
 
-        lock = FileLock(self.path / "lock", timeout=0)
+        # Long enough for who only looks, see `is_trained`.
+        lock = FileLock(self._lock, timeout=_A_LOOK)
         try:
             lock.acquire()
             remove_unfinished(self.path)
@@ -160,6 +163,22 @@ class RunFolder:
             yield
         finally:
             lock.release()
+
+    def is_trained(self) -> bool:
+        """Tell whether a process trains this run now."""
+        from filelock import FileLock, Timeout
+
+        if not self._lock.is_file():
+            return False
+        lock = FileLock(self._lock, timeout=0)
+        try:
+            lock.acquire()
+        except Timeout:
+            return True
+        except OSError:  # nobody trains where nothing can be written
+            return False
+        lock.release()
+        return False
 
     def add_notes(self, **values: Any) -> None:
         """Write down more about the run; a value replaces an earlier one of its name."""
@@ -187,6 +206,11 @@ class RunFolder:
             "to": last,
         }
         self.add_notes(sessions=[*earlier, session])
+
+    @property
+    def _lock(self) -> Path:
+        """What a process holds that trains this run."""
+        return self.path / "lock"
 
     @property
     def config(self) -> Path:
@@ -264,7 +288,10 @@ class ModelFile:
             run = RunFolder.of(str(path), trusted)
             path = run.best if run.best.is_file() else run.model
             if not path.is_file():
-                raise SettingsError(f"{name}: no trained model there: the training has not ended")
+                raise SettingsError(
+                    f"{name}: no trained model there: the training has not ended; to follow it: "
+                    f"{arkanoid('watch', path, '--web')}"
+                )
         elif not path.is_file():
             raise SettingsError(
                 f"{name}: there is no such file or folder; give the folder of a run, a model's "

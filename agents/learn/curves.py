@@ -2,8 +2,12 @@
 
 import json
 import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...envs.atomic import write_atomically
 from ...envs.reading import read_limited
@@ -11,6 +15,15 @@ from ..experiment.errors import SettingsError
 from ..experiment.files import cause
 
 STEP = "timesteps"
+# The curves that are drawn: each key, and its heading.
+SHOWN = {
+    "rollout/ep_rew_mean": "return, training",
+    "rollout/ep_hits_mean": "brick hits, training",
+    "rollout/ep_rounds_cleared_mean": "rounds cleared, training",
+    "validation/cleared": "cleared rate, validation",
+    "validation/return": "return, validation",
+    "validation/score": "score, validation",
+}
 # Some five hundred bytes a line, and a line for each rollout.
 _LARGEST = 2**28
 # Beyond what a network computes in single precision; sums and squares of such numbers are finite.
@@ -66,6 +79,12 @@ def read_curve(path: Path) -> list[dict[str, Any]]:
                     f"{path}: line {number} is damaged: remove it to use the other lines"
                 ) from None
     return rows
+
+
+def measured(curve: Sequence[Mapping[str, Any]], key: str) -> NDArray[np.float64]:
+    """Return the decisions and the values of all finite measurements, [n, 2]."""
+    points = [(row[STEP], row[key]) for row in curve if math.isfinite(row.get(key, math.nan))]
+    return np.array(points, np.float64).reshape(-1, 2)
 
 
 def _row(line: bytes) -> dict[str, Any]:

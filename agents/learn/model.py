@@ -26,6 +26,7 @@ from ..experiment.seeds import Purpose, spread_seed
 from ..experiment.settings import Experiment, Ppo
 from ..experiment.worlds import make_worlds, native
 from ..measure.policy import Policy
+from .checkpoints import read_checkpoint
 from .networks import ACTIVATIONS, extractor_arguments
 from .ppo import FastPPO
 from .tensors import is_like, read_entry, read_tensors
@@ -203,12 +204,17 @@ class _UnfilledPolicy(ActorCriticPolicy):
 def rebuild_network(model: ModelFile, experiment: Experiment) -> BasePolicy:
     """Return the run's network with the weights of the file; no code is run.
 
+    The file may be the run's checkpoint, too: a training that goes on has no other.
+
     Raises `SettingsError` if the file cannot be read or holds another network.
     """
     # An evaluation can change the game, but not the network.
     policy = _unfilled(replace(experiment, network=model.run.experiment().network))
     try:
-        weights = _read_weights(model.path, policy.state_dict())
+        if model.path == model.run.checkpoint:
+            weights = _fitting(read_checkpoint(model.path)["policy"], policy.state_dict())
+        else:
+            weights = _read_weights(model.path, policy.state_dict())
     except Exception as error:  # a damaged file can raise anything
         raise SettingsError(
             f"{model.path}: the weights cannot be read ({error}); the file must hold the network "
@@ -247,6 +253,11 @@ def _read_weights(path: Path, expected: dict[str, torch.Tensor]) -> dict[str, to
         if WEIGHTS not in archive.namelist():
             raise ValueError(f"there is no {WEIGHTS} in it")
         weights = read_tensors(read_entry(archive, WEIGHTS, limit))
+    return _fitting(weights, expected)
+
+
+def _fitting(weights: Any, expected: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
+    """Return copies of weights; raise ValueError if they do not fit ``expected``."""
     if not isinstance(weights, dict) or weights.keys() != expected.keys():
         raise ValueError("they belong to another network")
     for name, tensor in weights.items():

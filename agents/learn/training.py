@@ -20,7 +20,7 @@ from ..experiment.errors import SettingsError
 from ..experiment.files import cause
 from ..experiment.programs import arkanoid
 from ..experiment.provenance import weights_hash
-from ..experiment.runs import INTERRUPTED, RunFolder
+from ..experiment.runs import FINISHED, INTERRUPTED, RunFolder
 from ..experiment.seeds import Purpose, spread_seeds
 from ..experiment.settings import Experiment
 from ..experiment.worlds import make_worlds
@@ -37,8 +37,6 @@ from .starting import begin
 
 # Takes the number of decisions, and numbers by their names.
 Log = Callable[[int, dict[str, float]], None]
-
-FINISHED = "finished"
 
 
 def train(

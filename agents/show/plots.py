@@ -1,7 +1,6 @@
 """Plots of results: all policies, level by level, and the learning curves."""
 
 import io
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,22 +12,13 @@ from numpy.typing import NDArray
 
 from ...envs.atomic import write_atomically
 from ..experiment.settings import Experiment
-from ..learn.curves import STEP
+from ..learn.curves import SHOWN, measured
 from ..measure.comparison import COLUMNS, Comparison, Results, level_interval, summarise
 from ..measure.intervals import Interval, bootstrap_interval
 from ..measure.suites import EpisodeStart, make_suites
 
 # The measures that the bars show.
 _BARS = ("cleared", "score", "hits", "steps")
-# The learning curves: each key in the curves' file, and its heading.
-_CURVES = {
-    "rollout/ep_rew_mean": "return, training",
-    "rollout/ep_hits_mean": "brick hits, training",
-    "rollout/ep_rounds_cleared_mean": "rounds cleared, training",
-    "validation/cleared": "cleared rate, validation",
-    "validation/return": "return, validation",
-    "validation/score": "score, validation",
-}
 _POINTS = 200
 # Names come from files: a dollar in them is a dollar, and no formula.
 _plain_texts = rc_context({"text.parse_math": False, "text.usetex": False})
@@ -84,9 +74,9 @@ def plot_levels(
     axes = figure.subplots()
     places = np.arange(len(starts))
     marks = []
-    for index, measured in enumerate(results.values()):
+    for index, result in enumerate(results.values()):
         shift = 0.5 * (index / max(1, len(results) - 1) - 0.5)
-        intervals = [level_interval(measured["cleared"], level) for level in places.tolist()]
+        intervals = [level_interval(result["cleared"], level) for level in places.tolist()]
         bars = axes.errorbar(
             [interval.estimate for interval in intervals],
             places + shift,
@@ -111,8 +101,8 @@ def plot_curves(curves: Sequence[Sequence[Mapping[str, Any]]]) -> Figure:
     """Draw the learning curves of an agent: the mean of its runs, with its interval."""
     shown = {
         key: title
-        for key, title in _CURVES.items()
-        if all(len(_measured(curve, key)) for curve in curves)
+        for key, title in SHOWN.items()
+        if all(len(measured(curve, key)) for curve in curves)
     }
     rows = max(1, -(-len(shown) // 3))
     figure = Figure(figsize=(12, 3 * rows), layout="constrained")
@@ -135,19 +125,13 @@ def mean_curve(curves: Sequence[Sequence[Mapping[str, Any]]], key: str) -> NDArr
     All curves are read at the same decisions, as far as the shortest one goes, with straight lines
     between measurements. Each must have a finite one.
     """
-    series = [_measured(curve, key) for curve in curves]
+    series = [measured(curve, key) for curve in curves]
     first, last = max(one[0, 0] for one in series), min(one[-1, 0] for one in series)
     steps = np.linspace(first, max(first, last), _POINTS)
     values = np.stack([np.interp(steps, one[:, 0], one[:, 1]) for one in series])
     intervals = np.array([bootstrap_interval(values[:, at]) for at in range(_POINTS)])
     lines: NDArray[np.float64] = np.concatenate([steps[None], intervals.T])
     return lines
-
-
-def _measured(curve: Sequence[Mapping[str, Any]], key: str) -> NDArray[np.float64]:
-    """Return the decisions and the values of all finite measurements, [n, 2]."""
-    points = [(row[STEP], row[key]) for row in curve if math.isfinite(row.get(key, math.nan))]
-    return np.array(points, np.float64).reshape(-1, 2)
 
 
 def _errors(intervals: Sequence[Interval]) -> NDArray[np.float64]:

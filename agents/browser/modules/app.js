@@ -6,6 +6,7 @@ import { Collide } from "arkanoid/collide";
 import { FIELD_KEYS, KEYS } from "arkanoid/controls";
 import { bytesOf, jsonOf } from "arkanoid/data";
 import { Editor } from "arkanoid/editor";
+import { Following } from "arkanoid/following";
 import { Play } from "arkanoid/play";
 import { Scores } from "arkanoid/scores";
 import { Speaker } from "arkanoid/sound";
@@ -25,6 +26,11 @@ class App {
     this.scores = new Scores();
     this.clock = new Clock();
     this._parts = {};
+    this._networks = {};
+    const [first] = facts.agents;
+    const changed = () => this._parts.watch?.renew();
+    /** The run of the first agent, if there is one. */
+    this.following = facts.run && new Following(first.name, facts.run, changed);
     // Some telephones fill the screen with films only.
     document.getElementById("full").hidden = !document.fullscreenEnabled;
     this._button = (id) => document.getElementById(id);
@@ -33,6 +39,12 @@ class App {
   /** @returns {HTMLElement} the panel of a part */
   panel(name) {
     return document.getElementById(`panel-${name}`);
+  }
+
+  /** @returns {Promise<Uint8Array | null>} an agent's network; null if it has none yet */
+  network(name) {
+    if (name === this.following?.name) return this.following.network();
+    return (this._networks[name] ??= bytesOf(`agent-${name}`));
   }
 
   /** @returns {object | undefined} the replay of the game that was played last */

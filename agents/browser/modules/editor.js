@@ -36,7 +36,7 @@ export class Editor {
     }
     this._find("boss").onchange = () => this._show();
     const [agent] = app.facts.agents;
-    this._trials = new Trials(app.arkanoid, agent);
+    this._trials = new Trials(app.arkanoid, agent, (name) => app.network(name));
     this._find("who").textContent = agent.name;
     this._fillPalette(app.facts.bricks);
     this._fillRecipe(manifest.generator);
@@ -140,11 +140,12 @@ export class Editor {
     const shown = this._find("tries");
     shown.hidden = false;
     shown.textContent = "Trying …";
-    await this._trials.run({ bricks, boss }, TRIES, ({ played, cleared, ticks }) => {
+    const tried = await this._trials.run({ bricks, boss }, TRIES, ({ played, cleared, ticks }) => {
       const seconds = Math.round(ticks / cleared / this._rules.TICKS_PER_SECOND);
       const took = cleared ? `, in ${seconds} s on average` : "";
       shown.textContent = `Cleared ${cleared} of ${played}${took}.`;
     });
+    if (!tried) shown.textContent = this.app.following.news.agent;
   }
 
   another() {

@@ -32,6 +32,7 @@ export class StartForm {
     this._choices = choices;
     this._changed = changed;
     this._form = form;
+    this._turn = 0; // of levels that are played in turn
     const id = form.dataset.start;
     this._hint = make("p", { className: "hint" });
     this._level = make("select", { id: `${id}-level` });
@@ -75,6 +76,7 @@ export class StartForm {
       const { enemies } = this._manifest.games[this.choice.game].config;
       return { bricks: this._own.bricks, boss: this._own.boss && enemies };
     }
+    if (value === "asked") return this._next();
     if (value !== "generated") return value === "1" ? {} : { level: Number(value) };
     const typed = Math.trunc(Number(this._seed.value));
     const levelSeed = Math.min(MOST_SEED, Math.max(0, typed || 0));
@@ -89,6 +91,22 @@ export class StartForm {
     this._fill(false);
   }
 
+  /**
+   * Offer levels that are played in turn, and choose them.
+   * @param {{title: string, starts: object[]}} levels
+   */
+  ask(levels) {
+    this._asked = levels;
+    this._fill();
+    this._level.value = "asked";
+    this._fill(false);
+  }
+
+  /** Go on to the next level, where levels are played in turn. */
+  turn() {
+    this._turn += 1;
+  }
+
   /** Choose the round after another one. */
   chooseRound(number) {
     this._level.value = String(number);
@@ -97,6 +115,13 @@ export class StartForm {
       this._level.value = String(number);
     }
     this._fill(false);
+  }
+
+  _next() {
+    const { starts } = this._asked;
+    const start = starts[this._turn % starts.length];
+    const { enemies } = this._manifest.games[this.choice.game].config;
+    return start.boss ? { ...start, boss: enemies } : start;
   }
 
   _radios(id) {
@@ -133,8 +158,10 @@ export class StartForm {
     if (!names.length) rounds.push(make("option", { value: "1" }, "As in the training"));
     const group = make("optgroup", { label: "The rounds" }, ...rounds);
     const generated = make("option", { value: "generated" }, "A generated level");
-    const own = this._own ? [make("option", { value: "own" }, "Your level")] : [];
-    this._level.replaceChildren(...own, group, generated);
+    const first = [];
+    if (this._own) first.push(make("option", { value: "own" }, "Your level"));
+    if (this._asked) first.push(make("option", { value: "asked" }, this._asked.title));
+    this._level.replaceChildren(...first, group, generated);
     if (before) this._level.value = before;
     if (this._level.selectedIndex < 0) this._level.selectedIndex = 0;
   }

@@ -1,7 +1,6 @@
 // Trials: an agent plays a level again and again, as fast as it can.
 
 import { Agent } from "arkanoid/network";
-import { bytesOf } from "arkanoid/data";
 import { randomSeed } from "arkanoid/levels";
 
 const MOST_TICKS = 5 * 60 * 60; // five minutes of a game: it will not clear the level any more
@@ -13,10 +12,12 @@ export class Trials {
   /**
    * @param {Arkanoid} arkanoid
    * @param {{name: string, game: string}} agent
+   * @param {(name: string) => Promise<Uint8Array | null>} network gives the agent's latest one
    */
-  constructor(arkanoid, agent) {
+  constructor(arkanoid, agent, network) {
     this._arkanoid = arkanoid;
     this._described = agent;
+    this._network = network;
   }
 
   /** Whether this agent's game has a boss. */
@@ -29,19 +30,22 @@ export class Trials {
    * @param {object} level for `Game.reset`
    * @param {number} count of games
    * @param {(outcome: Outcome) => void} tell is called after each game
+   * @returns {Promise<boolean>} whether there is an agent
    */
   async run(level, count, tell) {
     const turn = (this._turn = Symbol());
     const outcome = { played: 0, cleared: 0, ticks: 0 };
-    this._agent ??= new Agent(
-      await this._arkanoid.open(this._described.game),
-      await bytesOf(`agent-${this._described.name}`),
-    );
+    const { name, game: opened } = this._described;
+    const network = await this._network(name);
+    if (!network) return false;
+    // The agent of a run that is followed changes.
+    if (network !== this._known) this._agent = new Agent(await this._arkanoid.open(opened), network);
+    this._known = network;
     while (outcome.played < count) {
       const game = this._play(level);
       while (!game.next().done) {
         await new Promise((resolve) => setTimeout(resolve));
-        if (this._turn !== turn) return;
+        if (this._turn !== turn) return true;
       }
       const { world } = this._agent.game;
       outcome.played += 1;
@@ -51,6 +55,7 @@ export class Trials {
       }
       tell(outcome);
     }
+    return true;
   }
 
   /** Forget the games that are being played. */

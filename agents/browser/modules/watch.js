@@ -2,12 +2,13 @@
 
 import { Agent } from "arkanoid/network";
 import { Controls } from "arkanoid/controls";
-import { bytesOf } from "arkanoid/data";
 import { StartForm, randomSeed, roundTitle } from "arkanoid/levels";
 import { Planes, Seen } from "arkanoid/seen";
 import { Thoughts } from "arkanoid/thoughts";
+import { Training } from "arkanoid/training";
 
 const SEEN_EVERY = 6; // pictures
+const STILL = matchMedia("(prefers-reduced-motion: reduce)");
 const LANDING = { colour: "#ffd866", radius: 0.2, height: 1.4 }; // brick widths
 
 export class Watch {
@@ -17,6 +18,7 @@ export class Watch {
     this._sitting = app.facts.sitting;
     this._controls = new Controls(app.facts.steps);
     this._agents = {};
+    this._networks = {}; // of the agents
     this.phase = "opening";
     const panel = app.panel("watch");
     const form = panel.querySelector("form");
@@ -24,8 +26,9 @@ export class Watch {
       return { name, title: name, hint: "", game };
     });
     this._form = new StartForm(form, app.arkanoid.manifest, "Agent", choices, () => this._layOut());
+    if (app.facts.asked) this._form.ask(app.facts.asked);
     form.onsubmit = (event) => event.preventDefault();
-    panel.querySelector("[data-do=next]").onclick = () => this._layOut();
+    panel.querySelector("[data-do=next]").onclick = () => this._next();
     this._take = panel.querySelector("[data-do=hand]");
     this._take.onclick = () => this._toggle();
     this._landing = document.getElementById("landing");
@@ -37,6 +40,8 @@ export class Watch {
       return { details, view: new View(details.lastElementChild) };
     });
     this._pictures = 0;
+    this._training = app.following && new Training(document.getElementById("training"));
+    this._showTraining();
   }
 
   get game() {
@@ -53,14 +58,38 @@ export class Watch {
   }
 
   get deed() {
+    if (this.phase === "waiting") return null;
     return this.phase === "paused" ? "Go on" : "Pause";
   }
 
   async enter() {
     if (!this.game) await this._layOut();
-    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (this.phase === "paused" && !still) this.phase = "playing";
-    else if (still) this.phase = "paused";
+    if (this.phase === "paused" && !STILL.matches) this.phase = "playing";
+    else if (STILL.matches && this.phase !== "waiting") this.phase = "paused";
+  }
+
+  /** Show what the run says that is followed, and its latest agent. */
+  async renew() {
+    this._showTraining();
+    const { name, game: played } = this._form.choice;
+    if (name !== this.app.following.name || this.phase === "opening") return;
+    const network = await this.app.network(name);
+    const turn = this._turn;
+    if (!network || network === this._networks[name]) return;
+    if (this.phase === "waiting") {
+      await this._layOut();
+      if (STILL.matches) this.phase = "paused";
+      return;
+    }
+    const agent = new Agent(await this.app.arkanoid.open(played), network);
+    if (this._turn !== turn) return; // the next game has it
+    // It plays on from here.
+    agent.game.restore(this.game.save());
+    this._agents[name] = agent;
+    this._networks[name] = network;
+    this._become(agent);
+    this._judgement = null;
+    this.app.stage.stale = true;
   }
 
   leave() {
@@ -76,7 +105,9 @@ export class Watch {
   press(key) {
     if (key === "pause" || (key === "fire" && !(this._hand && this.runs))) this._pause();
     else if (key === "once") this._once();
-    else if (key === "next" || key === "restart") this._layOut();
+    else if (key === "restart") this._layOut();
+    else if (key === "next") this._next();
+    else if (this.phase === "waiting") return;
     else if (key === "hand") this._toggle();
     else {
       if (key === "left" || key === "right") this._takeOver(true);
@@ -102,6 +133,7 @@ export class Watch {
   }
 
   notice() {
+    if (this.phase === "waiting") return { title: "No agent", lines: [this._lack], band: true };
     if (this.phase === "paused") {
       return { title: "Paused", buttons: [["Go on", () => this._pause()]], band: true };
     }
@@ -129,25 +161,49 @@ export class Watch {
     const turn = (this._turn = Symbol());
     const { name, game } = this._form.choice;
     this.phase = "opening";
-    if (!this._agents[name]) {
-      const file = await bytesOf(`agent-${name}`);
-      this._agents[name] = new Agent(await this.app.arkanoid.open(game), file);
+    const network = await this.app.network(name);
+    if (!this._agents[name] || network !== this._networks[name]) {
+      const opened = await this.app.arkanoid.open(game);
+      if (this._turn !== turn) return;
+      this._agents[name] = network ? new Agent(opened, network) : { name, game: opened };
+      this._networks[name] = network;
     }
     if (this._turn !== turn) return; // another one was asked for meanwhile
     const agent = this._agents[name];
-    if (agent !== this._agent) this._thoughts.begin(agent.game.meanings);
-    this._agent = agent;
-    this._rules = this.game.machine.record("Rules", this.game.address("rules"));
-    this._every = agent.config.frame_skip / this.game.config.frame_skip;
+    this._become(agent);
     this.game.reset({ seed: randomSeed(), ...this._form.options });
     this._thoughts.forget();
     this._judgement = null;
     this._roundTicks = 0;
     this._takeOver(false);
     this._handTicks = 0;
-    this.phase = "playing";
     this.app.stage.stale = true;
+    this._take.disabled = !network;
+    this.phase = network ? "playing" : "waiting";
+    if (!network) return;
     this.app.say(`${name} plays ${roundTitle(this.game)}.`);
+  }
+
+  /** Let an agent be the one that plays; or a game without one be shown. */
+  _become(agent) {
+    if (agent.game !== this.game) this._thoughts.begin(agent.game.meanings);
+    this._agent = agent;
+    this._rules = this.game.machine.record("Rules", this.game.address("rules"));
+    if (agent.config) this._every = agent.config.frame_skip / this.game.config.frame_skip;
+  }
+
+  /** Begin the next game, on the next level where there are several. */
+  _next() {
+    this._form.turn();
+    return this._layOut();
+  }
+
+  get _lack() {
+    return this.app.following.news.agent;
+  }
+
+  _showTraining() {
+    this._training?.show(this.app.following.news);
   }
 
   _step() {
@@ -177,7 +233,7 @@ export class Watch {
   /** Show the score for a while, and begin the next game. */
   _wait() {
     this._overTicks += 1;
-    if (this._overTicks > this._sitting.title) this._layOut();
+    if (this._overTicks > this._sitting.title) this._next();
     return this.phase === "over";
   }
 
@@ -188,7 +244,7 @@ export class Watch {
   }
 
   _pause() {
-    if (this.phase === "opening") return;
+    if (this.phase === "opening" || this.phase === "waiting") return;
     const goesOn = this.game.over ? "over" : "playing";
     this.phase = this.runs ? "paused" : goesOn;
     this._controls.letGo();
