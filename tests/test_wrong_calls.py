@@ -67,6 +67,9 @@ CALLS = {
     "web --ppo.gamma 1": "unknown option --ppo.gamma",
     "web --port 99999": "at most 65535",
     "web --model nothing": "the folder of a run",
+    "watch --port 8000": "add --web",
+    "watch --web --evaluation.seed 3": "changes nothing here",
+    "watch --web --port 99999": "at most 65535",
     "film RUN x.gif --level named": "a film shows one",
     "film RUN x.gif --out y.gif": "two films are named",
     "film --out": "--out",
@@ -116,6 +119,7 @@ CALLS = {
     "evaluate cut": "damaged",
     "evaluate others.zip": "config.toml",
     "watch mine.txt": "no model",
+    "watch nothing --web": "the folder of a run",
     "replay nothing.replay": "No such file",
     "replay mine.txt": "no replay",
     # Another game than the model's
@@ -148,7 +152,7 @@ BLIND = {
     "watch RUN": "arkanoid film RUN game.gif",
     "watch RUN --level seed:3": "film RUN game.gif --level seed:3",
     "watch": "no display",
-    "watch lite": "arkanoid web --model lite --no-open",
+    "watch lite": "arkanoid watch lite --web",
 }
 
 

@@ -19,8 +19,6 @@ from .arguments import add_trust, whole
 
 if TYPE_CHECKING:
     from ..browser import BrowserAgent, FollowedRun
-    from ..browser.server import PageServer
-
 _MOST_PORT = 65_535
 _EPILOG = """\
 Without --out the page is served on this computer, for this computer only, until Ctrl-C. If RUN is a
@@ -105,7 +103,7 @@ def serve(arguments: argparse.Namespace, wanted: Wanted | None) -> int:
     with server:
         print(f"{server.address} (Ctrl-C ends it)", flush=True)
         if arguments.no_open or "SSH_CONNECTION" in os.environ:
-            print(_tunnel(server), flush=True)
+            print(_tunnel(server.port), flush=True)
         if not arguments.no_open:
             # Browsers for terminals keep the command waiting, and wait for the page themselves.
             Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
@@ -181,7 +179,9 @@ def _find(
     return agent, run, asked_levels(experiment, wanted.level)
 
 
-def _tunnel(server: "PageServer") -> str:
+def _tunnel(port: int) -> str:
     """Return how one gets to the page from another computer."""
-    place = f"{server.port}:{server.server_address[0]}:{server.port}"
-    return f"from another computer: ssh -L {place} {socket.gethostname()}, then the same address"
+    from ..browser.server import HOST
+
+    tunnel = f"ssh -L {port}:{HOST}:{port} {socket.gethostname()}"
+    return f"from another computer: {tunnel}, then the same address"

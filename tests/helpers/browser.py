@@ -3,7 +3,7 @@
 import os
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -46,12 +46,13 @@ def run_browser() -> Iterator[Any]:
 
 
 @contextmanager
-def visit(browser: Any, address: str, **context: Any) -> Iterator[Any]:
+def visit(browser: Any, address: str, asks: Sequence[str] = (), **context: Any) -> Iterator[Any]:
     """Open a page and wait until it runs; it must say nothing on the console, and ask no network.
 
     Args:
         browser: of `run_browser`.
         address: of the page.
+        asks: what it may ask for in the folder of its address.
         context: how it is shown, such as `PHONE`.
     """
     faults: list[str] = []
@@ -59,7 +60,7 @@ def visit(browser: Any, address: str, **context: Any) -> Iterator[Any]:
     page = opened.new_page()
     page.on("console", lambda message: faults.append(message.text))
     page.on("pageerror", lambda error: faults.append(str(error)))
-    page.on("request", lambda request: _note(request.url, address, faults))
+    page.on("request", lambda request: _note(request.url, address, asks, faults))
     try:
         page.goto(address)
         wait_until(page, "globalThis.arkanoid")
@@ -82,7 +83,8 @@ def wait_until(page: Any, condition: str) -> None:
         page.wait_for_timeout(20)
 
 
-def _note(asked: str, address: str, faults: list[str]) -> None:
-    inside = asked.startswith(("data:", "blob:")) or asked == address.partition("#")[0]
-    if not inside and asked != address:
+def _note(asked: str, address: str, asks: Sequence[str], faults: list[str]) -> None:
+    page = address.partition("#")[0]
+    known = (address, page, *(f"{page.rpartition('/')[0]}/{name}" for name in asks))
+    if not asked.startswith(("data:", "blob:")) and asked not in known:
         faults.append(f"the page asks for {asked}")
