@@ -19,6 +19,7 @@ from .arguments import add_trust, whole
 
 if TYPE_CHECKING:
     from ..browser import BrowserAgent, FollowedRun
+    from ..browser.server import PageServer
 _MOST_PORT = 65_535
 _EPILOG = """\
 Without --out the page is served on this computer, for this computer only, until Ctrl-C. If RUN is a
@@ -76,7 +77,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         return serve(arguments, wanted)
     out = Path(arguments.out)
     _check_file(out, arguments)
-    page, _ = _make(wanted, served=False)
+    page, _ = make(wanted, served=False)
     try:
         write_atomically(out, page.encode())
     except OSError as error:
@@ -93,13 +94,8 @@ def serve(arguments: argparse.Namespace, wanted: Wanted | None) -> int:
     port = arguments.port or 0
     if port > _MOST_PORT:
         raise SettingsError(f"--port: at most {_MOST_PORT}, not {port}")
-    page, run = _make(wanted, served=True)
-    from ..browser.server import HOST, PageServer
-
-    try:
-        server = PageServer(page, port, run)
-    except OSError as error:
-        raise SettingsError(f"{HOST}:{port} cannot be served: {cause(error)}") from None
+    page, run = make(wanted, served=True)
+    server = open_server(page, port, run)
     with server:
         print(f"{server.address} (Ctrl-C ends it)", flush=True)
         if arguments.no_open or "SSH_CONNECTION" in os.environ:
@@ -112,12 +108,25 @@ def serve(arguments: argparse.Namespace, wanted: Wanted | None) -> int:
     return 0
 
 
+def open_server(page: str, port: int, run: "FollowedRun | None") -> "PageServer":
+    """Return the server of a page, and of the run that it follows.
+
+    Raises `SettingsError` if the port cannot be used.
+    """
+    from ..browser.server import HOST, PageServer
+
+    try:
+        return PageServer(page, port, run)
+    except OSError as error:
+        raise SettingsError(f"{HOST}:{port} cannot be served: {cause(error)}") from None
+
+
 def packaged_page() -> str:
     """Return the page with the packaged agents; HTML.
 
     Raises `SettingsError` where the game can't be made for browsers.
     """
-    return _make(None, served=False)[0]
+    return make(None, served=False)[0]
 
 
 def _check_file(out: Path, arguments: argparse.Namespace) -> None:
@@ -129,8 +138,12 @@ def _check_file(out: Path, arguments: argparse.Namespace) -> None:
         raise SettingsError("--port and --no-open are of serving; with --out nothing is served")
 
 
-def _make(wanted: Wanted | None, served: bool) -> "tuple[str, FollowedRun | None]":
-    """Return the page, HTML; and the run that it follows or shows, if it does."""
+def make(wanted: Wanted | None, served: bool) -> "tuple[str, FollowedRun | None]":
+    """Return the page, HTML; and the run that it follows or shows, if it does.
+
+    Raises `SettingsError` for what is wrong with the agent, and where the game can't be made for
+    browsers.
+    """
     agents: list[BrowserAgent] = []
     run, asked = None, None
     if wanted is not None:
