@@ -131,8 +131,8 @@ def test_an_hour(student: Student) -> None:
     said = student.types(f"{START} watch {run}", status=2)
     film, _, browser = said.partition("a film needs none: ")[2].partition("; nor does a browser: ")
     student.types(f"{film} --seconds 0.2")
-    page = browser.replace(" --no-open", "").strip()
-    student.types(f"{page} --out game.html")
+    assert browser.strip().endswith(f"watch {run} --web --no-open")
+    student.types(f"{START} web --model {run} --out game.html")
     assert (here / "game.html").is_file()
     assert (here / "game.gif").is_file()
 

@@ -152,7 +152,7 @@ BLIND = {
     "watch RUN": "arkanoid film RUN game.gif",
     "watch RUN --level seed:3": "film RUN game.gif --level seed:3",
     "watch": "no display",
-    "watch lite": "arkanoid watch lite --web",
+    "watch lite": "arkanoid watch lite --web --no-open",
 }
 
 
