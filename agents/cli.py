@@ -33,7 +33,7 @@ COMMANDS = {
     "dataset": "write recorded games as a Minari data set",
     "tune": "search for hyper-parameters",
     "evaluate": "measure trained models against the baselines",
-    "watch": "watch an agent play in a window",
+    "watch": "watch an agent play, in a window or a browser",
     "film": "write a film of an agent at play",
     "report": "write one page about an agent: curves, tables, a film, settings",
     "warm-up": "compile all that the game needs, so that nothing waits for it later",

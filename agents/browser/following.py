@@ -24,8 +24,8 @@ _LEAST = 0.5  # seconds between two looks
 _SHARE = 20  # looking takes one part of so many of a processor's time
 _FPS = "time/fps"
 _MINUTE, _HOUR = 60, 3600
-_NONE_YET = "No agent yet: the training has not written its first checkpoint."
-_NONE = "No agent: the training was stopped before its first checkpoint."
+_NONE_YET = "The training has not written its first checkpoint."
+_NONE = "The training was stopped before its first checkpoint."
 
 Curve = Sequence[Mapping[str, Any]]
 

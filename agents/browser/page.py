@@ -104,10 +104,10 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), _HERE / "modules", _HERE / "collisions")
+    rooms = [_HERE / name for name in ("modules", "watching", "collisions")]
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
-        for folder in folders
+        for folder in (resources.files(machine_room), *rooms)
         for file in sorted(folder.iterdir(), key=lambda file: file.name)
         if file.name.endswith(".js")
     }

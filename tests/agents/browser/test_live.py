@@ -25,7 +25,7 @@ ASKS = ("run.json", "agent")
 NEWS = "arkanoid.following.news"
 # Games that last, and a training that goes on for as long as the test.
 LASTING = {
-    **{"env.max_decisions": "20000", "env.lives": "99", "training.timesteps": "500_000_000"},
+    **{"env.max_decisions": "20000", "env.lives": "9", "training.timesteps": "500_000_000"},
     "training.checkpoint_every": "2048",
 }
 
@@ -138,10 +138,12 @@ def test_a_run_without_an_agent_waits_for_one(browser: Any, tmp_path: Path) -> N
         wait_until(page, "/^Cleared .* of 20/.test(document.getElementById('tries').textContent)")
 
 
-def test_a_server_that_has_ended(browser: Any, finished: RunFolder) -> None:
+def test_a_server_that_has_ended(browser: Any, finished: RunFolder, tmp_path: Path) -> None:
     """The page says so, and the agent plays on."""
+    run = RunFolder(Path(shutil.copytree(finished.path, tmp_path / "run")))
+    run.add_notes(outcome="interrupted")
     page = browser.new_page()
-    with served(finished) as server:
+    with served(run) as server:
         page.goto(server.address)
         wait_until(page, "part?.phase === 'playing'")
     wait_until(page, f"{NEWS}.state === 'lost'")

@@ -23,8 +23,8 @@ export class Training {
   show({ state, said, done, curves, agent }) {
     this._section.hidden = false;
     this._said.textContent = said;
-    this._said.className = state === "lost" ? "verdict bad" : "";
-    this._done.hidden = state === "finished" || done === null;
+    this._said.className = state === "lost" ? "lost" : "";
+    this._done.hidden = state === "finished" || state === "lost";
     this._done.value = done ?? 0;
     this._agent.textContent = agent;
     for (const curve of curves) {
@@ -36,7 +36,7 @@ export class Training {
       this._box.replaceChildren(...shown);
     }
     this._range.hidden = !curves.length;
-    this._range.textContent = `From 0 to ${COUNT.format(most)} decisions. Point at a curve to read it.`;
+    this._range.textContent = `0 to ${COUNT.format(most)} decisions. Point to read a value.`;
   }
 }
 

@@ -60,6 +60,8 @@ export class Following {
       }
       this.news = news;
     } catch {
+      // Of a run that has ended there is no more news.
+      if (this.news.state === "finished") return;
       this.news = { ...this.news, state: "lost", said: ENDED };
     }
   }
