@@ -103,11 +103,11 @@ export class Watch {
   }
 
   press(key) {
-    if (key === "pause" || (key === "fire" && !(this._hand && this.runs))) this._pause();
-    else if (key === "once") this._once();
-    else if (key === "restart") this._layOut();
+    if (key === "restart") this._layOut();
     else if (key === "next") this._next();
     else if (this.phase === "waiting") return;
+    else if (key === "pause" || (key === "fire" && !(this._hand && this.runs))) this._pause();
+    else if (key === "once") this._once();
     else if (key === "hand") this._toggle();
     else {
       if (key === "left" || key === "right") this._takeOver(true);
@@ -244,7 +244,7 @@ export class Watch {
   }
 
   _pause() {
-    if (this.phase === "opening" || this.phase === "waiting") return;
+    if (this.phase === "opening") return;
     const goesOn = this.game.over ? "over" : "playing";
     this.phase = this.runs ? "paused" : goesOn;
     this._controls.letGo();

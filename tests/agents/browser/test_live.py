@@ -121,8 +121,10 @@ def test_a_run_without_an_agent_waits_for_one(browser: Any, tmp_path: Path) -> N
     with served(run) as server, visit(browser, server.address, ASKS, **DESKTOP) as page:
         wait_until(page, "part.phase === 'waiting'")
         page.get_by_role("heading", name="No agent").wait_for()
-        for key in ("Space", "t", ".", "ArrowLeft", "n"):
+        for key in ("Space", "t", ".", "ArrowLeft", "p"):
             page.keyboard.press(key)
+            assert page.evaluate("arkanoid.part.phase") == "waiting"
+        page.keyboard.press("n")
         wait_until(page, "part.phase === 'waiting'")
         assert page.locator("[data-do=hand]").is_disabled()
         # Another one plays meanwhile.
