@@ -34,8 +34,7 @@ from ..registration import resolve_config
 from ..state import INFO_FIELDS, INFO_MEANINGS
 from .collisions import describe_meetings
 from .image import Image, lay_out
-from .network import ACTIVATIONS
-from .records import Block, Board, Game, Network, Picture
+from .records import Block, Board, Game, Network, Operation, Picture
 
 RECORDS = {
     "Game": Game,
@@ -47,6 +46,7 @@ RECORDS = {
     "Board": Board,
     "Block": Block,
     "Network": Network,
+    "Operation": Operation,
     "Meeting": Meeting,
 }
 _RULES = (
@@ -116,7 +116,6 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
             "silver": [0.0, MAX_SILVER],
             "gold": [0.0, MAX_GOLD],
         },
-        "activations": ACTIVATIONS,
         "meetings": describe_meetings(),
         "levels": [_level(name) for name in level_names()],
         "games": {name: _game(config) for name, config in games.items()},

@@ -1,4 +1,4 @@
-// What agents see: a vector by its parts, and the field's planes.
+// What agents see: a vector by its parts, the field's planes, or pictures.
 
 import { make } from "arkanoid/data";
 
@@ -69,6 +69,43 @@ export class Planes {
       });
     });
     this._box.replaceChildren(...figures);
+  }
+}
+
+/** The latest pictures, the newest last. */
+export class Pictures {
+  /** @param {HTMLElement} box which is filled */
+  constructor(box) {
+    this._box = box;
+  }
+
+  show(game, agent) {
+    if (agent !== this._agent) this._begin(agent);
+    const seen = agent.pictures;
+    const { channels } = agent.sees;
+    this._images.forEach(([pen, image], place) => {
+      const pixels = image.data;
+      for (let pixel = 0; 4 * pixel < pixels.length; pixel++) {
+        const first = (place * pixels.length / 4 + pixel) * channels;
+        for (let colour = 0; colour < 3; colour++) {
+          pixels[4 * pixel + colour] = seen[first + (channels === 3 ? colour : 0)];
+        }
+        pixels[4 * pixel + 3] = 255;
+      }
+      pen.putImageData(image, 0, 0);
+    });
+  }
+
+  _begin(agent) {
+    this._agent = agent;
+    const { size: [height, width], pictures } = agent.sees;
+    const made = Array.from({ length: pictures }, () => {
+      const canvas = make("canvas", { width, height, className: "map" });
+      canvas.style.aspectRatio = `${width} / ${height}`;
+      return canvas;
+    });
+    this._images = made.map((canvas) => [canvas.getContext("2d"), new ImageData(width, height)]);
+    this._box.replaceChildren(...made.map((canvas) => make("figure", {}, canvas)));
   }
 }
 

@@ -4,10 +4,14 @@ import { Agent } from "arkanoid/network";
 import { Controls } from "arkanoid/controls";
 import { bytesOf } from "arkanoid/data";
 import { StartForm, randomSeed, roundTitle } from "arkanoid/levels";
-import { Planes, Seen } from "arkanoid/seen";
+import { Pictures, Planes, Seen } from "arkanoid/seen";
 import { Thoughts } from "arkanoid/thoughts";
 
 const SEEN_EVERY = 6; // pictures
+/** What is shown of what agents see, by what they see. */
+const VIEWS = [
+  ["seen", Seen, ["vector"]], ["planes", Planes, ["vector", "grid"]], ["pictures", Pictures, ["rgb"]],
+];
 const LANDING = { colour: "#ffd866", radius: 0.2, height: 1.4 }; // brick widths
 
 export class Watch {
@@ -31,10 +35,10 @@ export class Watch {
     this._landing = document.getElementById("landing");
     this._landing.onchange = () => (app.stage.stale = true);
     this._thoughts = new Thoughts();
-    this._views = [["seen", Seen], ["planes", Planes]].map(([id, View]) => {
+    this._views = VIEWS.map(([id, View, kinds]) => {
       const details = document.getElementById(id);
       details.ontoggle = () => this._see(true);
-      return { details, view: new View(details.lastElementChild) };
+      return { details, kinds, view: new View(details.lastElementChild) };
     });
     this._pictures = 0;
   }
@@ -137,6 +141,8 @@ export class Watch {
     const agent = this._agents[name];
     if (agent !== this._agent) this._thoughts.begin(agent.game.meanings);
     this._agent = agent;
+    this._landing.parentElement.hidden = !this.game.parts.vector.landing_x;
+    for (const { details, kinds } of this._views) details.hidden = !kinds.includes(agent.sees.kind);
     this._rules = this.game.machine.record("Rules", this.game.address("rules"));
     this._every = agent.config.frame_skip / this.game.config.frame_skip;
     this.game.reset({ seed: randomSeed(), ...this._form.options });
@@ -241,6 +247,8 @@ export class Watch {
 
   _see(now) {
     if (!now || !this.game) return;
-    for (const { details, view } of this._views) if (details.open) view.show(this.game);
+    for (const { details, view } of this._views) {
+      if (details.open && !details.hidden) view.show(this.game, this._agent);
+    }
   }
 }
