@@ -15,7 +15,7 @@ from .boards import lay_board, plan_board, search_board
 from .checksums import checksum_of
 from .network import think
 from .pictures import begin_picture, draw_picture, measure_picture
-from .playing import begin_game, forget_game, note_game, seed_game, steer_game
+from .playing import begin_game, fit_game, forget_game, note_game, seed_game, steer_game
 from .records import Block, Board, Game, Network, Picture
 
 
@@ -41,6 +41,12 @@ def step(index: int, address: int) -> None:
 def steer(index: int, address: int) -> None:
     """Play a decision with the game's velocity and fire."""
     steer_game(address, array_at(address, (1,), Game)[0])
+
+
+@kernel
+def fit(index: int, address: int) -> None:
+    """Let a game's paddle be as wide as the game says."""
+    fit_game(array_at(address, (1,), Game)[0])
 
 
 @kernel
@@ -123,7 +129,7 @@ def meet(index: int, address: int) -> None:
 
 
 _NAMES = (
-    *("seed", "reset", "step", "steer", "forget", "note", "vector", "grid"),
+    *("seed", "reset", "step", "steer", "fit", "forget", "note", "vector", "grid"),
     *("measure", "begin", "draw", "plan", "lay", "search", "add", "judge"),
     "meet",
 )

@@ -13,7 +13,7 @@ from .. import rules, state
 from ..actions import COMMANDS, action_meanings
 from ..batch.recorder import CHECK_EVERY
 from ..batch.replays import NOTE_EVERY, plain_plan
-from ..config import Config
+from ..config import LIMITS, WHOLE_LIMITS, Config
 from ..draw.view import FULL_HEIGHT, FULL_WIDTH, WALL_WIDTH
 from ..game.rulebook import Rules
 from ..levels.files import level_names, load_level
@@ -103,6 +103,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
         "view": {"width": FULL_WIDTH, "height": FULL_HEIGHT, "wall": WALL_WIDTH},
         "checksums": {"every": CHECK_EVERY, "noted": NOTE_EVERY},
         "defaults": Config().plain(),
+        "limits": WHOLE_LIMITS | LIMITS,
         "start": AS_THE_CONFIGURATION_SAYS,
         "infos": {
             key: {"field": field, "meaning": INFO_MEANINGS[key]}

@@ -8,6 +8,7 @@ from ...physics.kernels.portable import array_at
 from ..actions import decode_velocities
 from ..batch.stepping import reset_worlds, step_worlds
 from ..game.random import mix_seed
+from ..game.shapes import fit_paddle
 from ..observe.planes import ANY_CELL, MAX_MARKS
 from ..observe.shown import UNKNOWN
 from ..state import World
@@ -64,6 +65,12 @@ def steer_game(address: int, game: Any) -> None:
         False,
         arrays.episodic_life != 0,
     )
+
+
+@kernel
+def fit_game(game: Any) -> None:
+    """Let the paddle be as wide as the game says."""
+    fit_paddle(rules_of(game.arrays)[0], game.paddle)
 
 
 @kernel

@@ -19,6 +19,7 @@ Game = record_dtype(
         ("seed", np.uint64),  # of random numbers, for `seed`
         ("velocity", np.float64, (2,)),  # and fire, for `steer`
         ("checksum", np.int64),  # of the states so far, in 32 bits
+        ("paddle", np.float64),  # factor on the paddle's width, for `fit`
     ]
 )
 

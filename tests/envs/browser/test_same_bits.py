@@ -66,10 +66,12 @@ ELSEWHERE = {
     "one level again and again": {"levels": "seed:7", "difficulty": 0.5, **BY_HAND},
     "two levels": {"levels": ["moat", "warden"], "lives": 1, "reward": "score"},
     "fast": {"speed": 2.5, "life_penalty": 1.0, "deflection": "zones6", "capsules": False},
+    "wide": {"paddle": 3.1, "frame_skip": 1, "actions": "box"},
+    "narrow": {"paddle": 0.25, "deflection": "physical", "levels": "warden", "lives": 9},
     "without fire": {"actions": "discrete3", "frame_skip": 2, "enemies": False, "levels": "train"},
 }
 RULES = [
-    *(config for config in GAMES.values() if config.paddle == 1.0),
+    *GAMES.values(),
     *(Config.from_keywords(keywords) for keywords in ELSEWHERE.values()),
 ]
 # How many decisions of random play are compared, in `PART`s.
@@ -349,7 +351,8 @@ def test_fields_have_their_names(done: dict) -> None:
         "state": "these bytes are no state",
         "nothing": "this is no replay",
         "damaged": "the replay is damaged",
-        "paddle": "the paddle is 2 times as wide as the browser's",
+        "paddle": "paddle is 6, and not from 0.25 to 5",
+        "ticks": "frame_skip is 0, and not from 1 to 1000",
         "unseen": "a game can't be observed",
         "early": "a recording begins with a reset",
     }.items(),
