@@ -2,35 +2,17 @@
 
 import base64
 import json
-import zlib
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.envs.batch.batch import Batch
-from arkanoid.envs.batch.recorder import CHECKED, Checked
-from arkanoid.envs.browser.manifest import browser_games
 from arkanoid.envs.levels import load_level
 from arkanoid.envs.play.by_hand import BY_HAND
 from helpers.browser import DESKTOP, PHONE, visit, wait_until
 
 MOST_BYTES = 1_500_000
-ALL = np.ones(1, np.bool_)
-# The checksum of 10,000 decisions of a game, episode after episode.
-DECISIONS = 10_000
-CHECKSUM = """async ([name, actions]) => {
-  const game = await arkanoid.arkanoid.open(name);
-  game.reset({ seed: 5 });
-  game.record.checksum = 0;
-  for (const action of actions) {
-    if (game.over) game.reset();
-    game.step(action);
-    game.note();
-  }
-  return game.record.checksum;
-}"""
 PIXELS = """() => {
   const { width, height } = arkanoid.stage.canvas;
   const { data } = arkanoid.stage.canvas.getContext("2d").getImageData(0, 0, width, height);
@@ -53,26 +35,6 @@ def test_one_file_has_all_and_asks_for_nothing(file: Path) -> None:
     assert len(content) < MOST_BYTES
     assert b'src="http' not in content
     assert b'href="http' not in content
-
-
-@pytest.mark.parametrize("name", ["full", "lite"])
-def test_ten_thousand_decisions_have_the_bits_of_the_processor(page: Any, name: str) -> None:
-    config = browser_games()[name]
-    luck = np.random.default_rng(8)
-    actions = luck.integers(6 if name == "full" else 3, size=DECISIONS)
-    batch = Batch(1, config)
-    batch.reset(ALL, {}, [5])
-    checked = np.zeros((), Checked)
-    checksum = 0
-    for action in actions:
-        if batch.worlds["done"][0]:
-            batch.reset(ALL)
-        batch.command(np.array([action]))
-        batch.step()
-        for field in CHECKED:
-            checked[field] = batch.worlds[field][0]
-        checksum = zlib.crc32(checked.tobytes(), checksum)
-    assert page.evaluate(CHECKSUM, [name, actions.tolist()]) == checksum
 
 
 def test_the_canvas_shows_what_render_returns(page: Any) -> None:
