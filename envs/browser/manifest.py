@@ -30,11 +30,12 @@ from ..levels.motifs import MOTIFS
 from ..levels.plan import plan_levels
 from ..levels.starts import AS_THE_CONFIGURATION_SAYS
 from ..play.by_hand import BY_HAND
+from ..play.hearing import TONES
 from ..registration import resolve_config
 from ..state import INFO_FIELDS, INFO_MEANINGS
 from .collisions import describe_meetings
 from .image import Image, lay_out
-from .records import Block, Board, Game, Network, Operation, Picture
+from .records import Block, Board, Game, Hearing, Network, Operation, Picture
 
 RECORDS = {
     "Game": Game,
@@ -43,6 +44,7 @@ RECORDS = {
     "Rules": Rules,
     "LevelEntry": state.LevelEntry,
     "Picture": Picture,
+    "Hearing": Hearing,
     "Board": Board,
     "Block": Block,
     "Network": Network,
@@ -117,6 +119,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
             "silver": [0.0, MAX_SILVER],
             "gold": [0.0, MAX_GOLD],
         },
+        "tones": [tone.name for tone in TONES],
         "meetings": describe_meetings(),
         "levels": [_level(name) for name in level_names()],
         "games": {name: _game(config) for name, config in games.items()},

@@ -40,6 +40,16 @@ Picture = record_dtype(
     ]
 )
 
+# A tick of a game, for ears.
+Hearing = record_dtype(
+    [
+        ("before", np.int64),  # `World` [1]
+        ("after", np.int64),  # `World` [1]
+        ("outcome", np.int64),  # `Outcome` [1]
+        ("tones", np.int64),  # that are heard, as bits
+    ]
+)
+
 # A level on the drawing board.
 Board = record_dtype(
     [

@@ -81,19 +81,15 @@ export class Pictures {
 
   show(game, agent) {
     if (agent !== this._agent) this._begin(agent);
-    const seen = agent.pictures;
-    const { channels } = agent.sees;
-    this._images.forEach(([pen, image], place) => {
-      const pixels = image.data;
-      for (let pixel = 0; 4 * pixel < pixels.length; pixel++) {
-        const first = (place * pixels.length / 4 + pixel) * channels;
-        for (let colour = 0; colour < 3; colour++) {
-          pixels[4 * pixel + colour] = seen[first + (channels === 3 ? colour : 0)];
-        }
-        pixels[4 * pixel + 3] = 255;
+    const { pictures: seen, sees: { channels } } = agent;
+    let place = 0;
+    for (const [pen, image] of this._images) {
+      for (let pixel = 0; pixel < image.data.length; pixel += 4, place += channels) {
+        const colours = [0, channels >> 1, channels - 1].map((channel) => seen[place + channel]);
+        image.data.set([...colours, 255], pixel);
       }
       pen.putImageData(image, 0, 0);
-    });
+    }
   }
 
   _begin(agent) {

@@ -164,7 +164,7 @@ export class Watch {
     this.app.speaker.before(game);
     const steered = () => this._controls.command(world.paddle_x, this._rules.paddle_speed);
     game.step(this._hand ? steered() : this._judgement.action);
-    this.app.speaker.after(game);
+    this.app.speaker.after();
     this._thoughts.note(this._judgement.value);
     this._handTicks -= 1;
     this._roundTicks = world.rounds_cleared ? 0 : this._roundTicks + 1;

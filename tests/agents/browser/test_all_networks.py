@@ -88,3 +88,21 @@ def test_pictures_are_those_of_the_game(shown: Any) -> None:
       const { pictures } = agent;
       return drawn.every((value, place) => pictures[drawn.length + place] === value);
     }""")
+
+
+def test_pictures_are_shown_as_they_are_seen(shown: Any) -> None:
+    shown.get_by_label("pictures", exact=True).check()
+    wait_until(shown, "game?.name === 'pictures at play' && world.decisions > 8")
+    assert shown.evaluate("""() => {
+      const { part } = arkanoid;
+      document.getElementById("pictures").open = true;
+      part._see(true);
+      const { pictures } = part._agent;
+      const canvases = [...document.querySelectorAll("#pictures canvas")];
+      const drawn = canvases.flatMap((canvas) => {
+        const { data } = canvas.getContext("2d").getImageData(0, 0, 48, 48);
+        return [...data].filter((_, place) => place % 4 < 3);
+      });
+      return drawn.length === pictures.length
+        && drawn.every((value, place) => value === pictures[place]);
+    }""")

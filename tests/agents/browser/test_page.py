@@ -122,6 +122,62 @@ def test_where_a_game_begins(page: Any) -> None:
     assert world(page, "start_difficulty") == 0.5
 
 
+def test_another_level_in_the_middle_of_a_game_is_asked_for(page: Any) -> None:
+    """The game was gone at once, by a slip of the mouse or a key."""
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 5")
+    level = page.get_by_label("Level", exact=True)
+    level.select_option("4")
+    assert phase(page) == "asked"
+    level.select_option("5")  # no answer
+    assert phase(page) == "asked"
+    page.get_by_role("button", name="No, go on").click()
+    assert level.input_value() == "1"
+    wait_until(page, "part.phase === 'playing' && world.round_number === 1")
+    page.get_by_label("Lite").check()
+    assert phase(page) == "asked"
+    page.locator("[data-do=restart]").click()
+    assert page.get_by_label("Full", exact=True).is_checked()
+    page.get_by_role("button", name="No, go on").click()
+    wait_until(page, "part.phase === 'playing' && world.decisions > 5")
+    level.select_option("4")
+    page.get_by_role("button", name="Yes, leave this game").click()
+    wait_until(page, "part.phase === 'ready' && world.round_number === 4")
+
+
+def test_a_level_of_the_editor_in_the_middle_of_a_game_is_asked_for(page: Any) -> None:
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 5")
+    page.get_by_role("link", name="Editor").click()
+    page.locator("[data-edit=play]").click()
+    wait_until(page, "part.phase === 'asked'")
+    assert world(page, "decisions") > 5
+    page.get_by_role("button", name="Yes, leave this game").click()
+    wait_until(page, "part.phase === 'ready' && world.start_kind.some(Boolean)")
+
+
+def test_two_keys_for_one_direction(page: Any) -> None:
+    """When one of them was let go, the paddle stood still, though the other one was held."""
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 0")
+    page.keyboard.down("ArrowLeft")
+    page.keyboard.down("a")
+    page.keyboard.up("ArrowLeft")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[0]") == -1
+    page.keyboard.up("a")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[0]") == 0
+    # The mouse's button is another key for fire.
+    page.locator("#picture").hover()
+    page.keyboard.down("Space")
+    page.mouse.down()
+    page.mouse.up()
+    page.evaluate("arkanoid.part._controls.command(0, 1)")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[1]") == 1
+    page.keyboard.up("Space")
+    page.evaluate("arkanoid.part._controls.command(0, 1)")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[1]") == 0
+
+
 def test_high_scores_are_kept(page: Any) -> None:
     """The balls fall out; the score is of the game's first seconds."""
     page.evaluate("arkanoid.clock.speed = 64")

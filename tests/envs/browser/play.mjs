@@ -8,6 +8,7 @@ import { pathToFileURL } from "node:url";
 const [jobs, sources, module, manifest] = process.argv.slice(2);
 const source = (name) => import(pathToFileURL(`${sources}/${name}`));
 const { loadArkanoid } = await source("game.js");
+const { Ears } = await source("hearing.js");
 const { Recorder, Replay } = await source("replay.js");
 const arkanoid = await loadArkanoid(
   readFileSync(module),
@@ -128,6 +129,19 @@ const works = {
     const first = onward();
     game.restore(saved);
     return [first, onward()];
+  },
+
+  /** Return the tones of each tick. */
+  async hear({ game: name, actions }) {
+    const game = await arkanoid.open(name);
+    game.reset({ seed: 4 });
+    const ears = new Ears(game);
+    return actions.map((action) => {
+      if (game.over) game.reset();
+      ears.listen();
+      game.step(action);
+      return ears.hear();
+    });
   },
 
   /** Draw in many sizes, as a page that is resized does, and return how memory grows. */

@@ -33,6 +33,7 @@ from arkanoid.envs.levels.plan import plan_levels
 from arkanoid.envs.observe.planes import GridObserver
 from arkanoid.envs.observe.vector import VectorObserver
 from arkanoid.envs.play.by_hand import BY_HAND
+from arkanoid.envs.play.hearing import tones_of
 from arkanoid.envs.rules import BRICK_LETTERS, CELLS, COLUMNS, GOLD, ROWS
 from arkanoid.envs.state import INFO_FIELDS
 from arkanoid.physics.kernels.portable.wasm import make_wasm
@@ -221,6 +222,7 @@ def jobs() -> dict:
             "game": "everything",
             "actions": random_actions(GAMES["everything"], 100, 7),
         },
+        "hear": playing("everything", 4, {}, 5000) | {"work": "hear"},
         "resize": {"work": "resize", "sizes": RESIZED},
         "names": {"work": "names"},
         "mistakes": {
@@ -306,6 +308,21 @@ def test_bricks_that_no_ball_can_reach(done: dict) -> None:
 def test_a_restored_state_goes_on_as_before(done: dict) -> None:
     first, again = done["restore"]
     assert first == again
+
+
+def test_what_is_heard(done: dict) -> None:
+    batch, heard = Batch(1, GAMES["everything"]), []
+    batch.reset(ALL, None, [4])
+    for action in random_actions(GAMES["everything"], 5000, 4):
+        if batch.worlds["done"][0]:
+            batch.reset(ALL)
+        before = batch.worlds[0].copy()
+        batch.command(np.array([action]))
+        batch.step()
+        tones = tones_of(before, batch.worlds[0], batch.outcomes[0])
+        heard.append([tone.name for tone in tones])
+    assert done["hear"] == heard
+    assert {name for names in heard for name in names} >= {"WALL", "BRICK", "LIFE_LOST"}
 
 
 def test_a_page_that_is_resized_takes_no_more_and_more_memory(done: dict) -> None:
