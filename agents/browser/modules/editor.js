@@ -101,7 +101,7 @@ export class Editor {
     else this._stroking = this._stroke(() => this._paint(cells));
   }
 
-  /** @returns {Array<number | null>} the cells between the last place of a stroke and this one */
+  /** @returns {Array<number | null>} the cells from the last place of a stroke to this one */
   _cellsTo(x, y, held) {
     const { LATTICE_TOP, BRICK_HEIGHT, BRICK_WIDTH, COLUMNS, ROWS } = this._rules;
     const place = [x / BRICK_WIDTH, (LATTICE_TOP - y) / BRICK_HEIGHT];
@@ -216,7 +216,6 @@ export class Editor {
     this._set(from.pop());
   }
 
-  /** Paint cells; null is none. */
   _paint(cells) {
     const { COLUMNS } = this._rules;
     const letters = Array.from(this._level.bricks);

@@ -224,6 +224,8 @@ export class Play {
     if (this._begun && !(this.phase === "asked" && this._asked === key)) {
       this._asked = key;
       this._enter("asked");
+      this.app.stage.frame.scrollIntoView({ block: "nearest" });
+      this.app.say(QUESTIONS[key]);
       return;
     }
     if (key === "next") this._form.chooseRound(this.game.world.round_number + 1);

@@ -3,7 +3,6 @@
 import { make } from "arkanoid/data";
 
 const REMEMBERED = 1200; // ticks
-// What an action commands that is no choice: a velocity and fire.
 const COMMANDS = ["LEFT", "RIGHT", "FIRE"];
 
 /** @returns {string} an action's meaning, in words */

@@ -129,6 +129,7 @@ def test_another_level_in_the_middle_of_a_game_is_asked_for(page: Any) -> None:
     level = page.get_by_label("Level", exact=True)
     level.select_option("4")
     assert phase(page) == "asked"
+    assert page.locator("#said").text_content() == "Change the game?"
     level.select_option("5")  # no answer
     assert phase(page) == "asked"
     page.get_by_role("button", name="No, go on").click()
