@@ -49,6 +49,16 @@ MAX_SIZE = 4096  # pixels, of a picture's height and width
 MAX_STACK = 64
 MOST_WORLDS = 1 << 30  # of the largest pictures: more are no size of an array
 MOST_DECISIONS = 10**12
+# The least and the most of the keywords of the game that are whole numbers, and of other numbers.
+WHOLE_LIMITS = {"frame_skip": (1, 1000), "lives": (1, 1000), "max_decisions": (1, MOST_DECISIONS)}
+LIMITS = {
+    "sticky_action": (0.0, 1.0),
+    "life_penalty": (0.0, 1e9),
+    "speed": (1e-3, 1e6),
+    "paddle": (0.25, 5.0),
+    "difficulty": (0.0, 1.0),
+    "capsule_rate": (0.0, 1.0),
+}
 
 
 def _keyword(default: Any, meaning: str, words: Mapping[str, str] | None = None) -> Any:
@@ -119,19 +129,13 @@ class Config:
         check_choice("actions", self.actions, tuple(ACTIONS))
         check_choice("reward", self.reward, tuple(REWARDS))
         check_choice("deflection", self.deflection, tuple(DEFLECTIONS))
-        check_integer("frame_skip", self.frame_skip, 1, 1000)
-        check_integer("lives", self.lives, 1, 1000)
-        check_boolean("episodic_life", self.episodic_life)
-        check_integer("max_decisions", self.max_decisions, 1, MOST_DECISIONS)
-        check_number("sticky_action", self.sticky_action, 0.0, 1.0)
-        check_number("life_penalty", self.life_penalty, 0.0, 1e9)
-        check_number("speed", self.speed, 1e-3, 1e6)
-        check_number("paddle", self.paddle, 0.25, 5.0)
-        if self.difficulty is not None:
-            check_number("difficulty", self.difficulty, 0.0, 1.0)
-        check_boolean("capsules", self.capsules)
-        check_number("capsule_rate", self.capsule_rate, 0.0, 1.0)
-        check_boolean("enemies", self.enemies)
+        for name, limits in WHOLE_LIMITS.items():
+            check_integer(name, getattr(self, name), *limits)
+        for name, bounds in LIMITS.items():
+            if name != "difficulty" or self.difficulty is not None:
+                check_number(name, getattr(self, name), *bounds)
+        for name in ("episodic_life", "capsules", "enemies"):
+            check_boolean(name, getattr(self, name))
         object.__setattr__(self, "levels", _paths_as_text(self.levels))
         _check_levels(self.levels)
 

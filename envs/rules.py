@@ -31,7 +31,7 @@ SPEED_STAGE_HITS = (30, 55, 80, 105, 130, 150, 165)
 MAX_BALLS = 3
 
 PADDLE_WIDTH = 2.0
-LONG_PADDLE_WIDTH = 3.0  # enlarged; never wider than the field, see `paddle_widths`
+LONG_PADDLE_WIDTH = 3.0  # enlarged; never wider than the field, see `fit_paddle`
 PADDLE_THICKNESS = 0.25
 PADDLE_TOP = 2.0
 PADDLE_Y = PADDLE_TOP - PADDLE_THICKNESS / 2

@@ -6,7 +6,6 @@ from typing import Any
 
 from ...envs.draw.png import png_bytes
 from ...envs.play.controls import STEPS
-from ...envs.play.hearing import COUNTED, PADDLE_REACH
 from ...envs.play.sitting import OVER_TICKS, TITLE_TICKS, WARNING_TICKS
 from ...envs.play.sound import ATTACK, LOUDEST, Tone
 from ...envs.play.things import (
@@ -43,8 +42,6 @@ def page_facts() -> dict[str, Any]:
             "loudness": LOUDEST,
             "attack": ATTACK,
             "tones": {tone.name: tone.value for tone in Tone},
-            "counted": {field: tone.name for field, tone in COUNTED.items()},
-            "paddleReach": PADDLE_REACH,
         },
         "things": _describe(_THINGS),
         "bricks": [

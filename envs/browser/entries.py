@@ -1,7 +1,7 @@
 """The entries that a browser calls: each does one thing with the record at its address.
 
 They call the very kernels that play, observe and draw on the processor. So the bits are the same.
-The index has no meaning: a record is of one game, picture, board, block, network or meeting.
+The index has no meaning: a record is of one game, tick, picture, board, block, network or meeting.
 """
 
 from ...physics.kernels import kernel
@@ -15,8 +15,16 @@ from .boards import lay_board, plan_board, search_board
 from .checksums import checksum_of
 from .network import think
 from .pictures import begin_picture, draw_picture, measure_picture
-from .playing import begin_game, forget_game, note_game, seed_game, steer_game
-from .records import Block, Board, Game, Network, Picture
+from .playing import (
+    begin_game,
+    fit_game,
+    forget_game,
+    hear_tick,
+    note_game,
+    seed_game,
+    steer_game,
+)
+from .records import Block, Board, Game, Hearing, Network, Picture
 
 
 @kernel
@@ -44,6 +52,12 @@ def steer(index: int, address: int) -> None:
 
 
 @kernel
+def fit(index: int, address: int) -> None:
+    """Let a game's paddle be as wide as the game says."""
+    fit_game(array_at(address, (1,), Game)[0])
+
+
+@kernel
 def forget(index: int, address: int) -> None:
     """Note that a game's state was changed from outside."""
     forget_game(array_at(address, (1,), Game)[0])
@@ -53,6 +67,12 @@ def forget(index: int, address: int) -> None:
 def note(index: int, address: int) -> None:
     """Take a game's state into its checksum."""
     note_game(array_at(address, (1,), Game)[0])
+
+
+@kernel
+def hear(index: int, address: int) -> None:
+    """Find the tones of a tick."""
+    hear_tick(array_at(address, (1,), Hearing)[0])
 
 
 @kernel
@@ -123,7 +143,8 @@ def meet(index: int, address: int) -> None:
 
 
 _NAMES = (
-    *("seed", "reset", "step", "steer", "forget", "note", "vector", "grid"),
+    *("seed", "reset", "step", "steer", "fit", "forget", "note", "hear"),
+    *("vector", "grid"),
     *("measure", "begin", "draw", "plan", "lay", "search", "add", "judge"),
     "meet",
 )

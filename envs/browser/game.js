@@ -4,8 +4,6 @@ import { Board, kindsOf } from "./board.js";
 import { Machine } from "./machine.js";
 import { Meeting } from "./meeting.js";
 
-const MOST_TICKS = 1000; // of a decision, as in `envs/config.py`
-
 /**
  * @typedef {object} Start how episodes begin from now on; nothing given changes nothing
  * @property {number | bigint} [seed] of the random numbers: forgets earlier options
@@ -60,16 +58,12 @@ export class Arkanoid {
    * @param {object} config all keywords of the environment
    * @param {object} levels as `Replay.levels`
    * @returns {Promise<Game>}
+   * @throws {RangeError} a keyword is too small or too large
    */
   async openAs(config, levels) {
     const [name] = Object.keys(this.manifest.games);
     const image = this.manifest.games[name];
-    if (config.paddle !== image.config.paddle) {
-      throw new RangeError(`the paddle is ${config.paddle} times as wide as the browser's`);
-    }
-    if (!(config.frame_skip >= 1 && config.frame_skip <= MOST_TICKS)) {
-      throw new RangeError(`a decision has 1 to ${MOST_TICKS} ticks, not ${config.frame_skip}`);
-    }
+    checkLimits(config, this.manifest.limits);
     const { length } = this.manifest.records.LevelEntry;
     const game = new Game(await this.machine(), "a game", {
       ...image,
@@ -82,6 +76,8 @@ export class Arkanoid {
       shapes: {},
     });
     setRules(game, config, levels);
+    game.record.paddle = config.paddle;
+    game.machine.kernels.fit(0, game.record.$address);
     const table = game.machine.reserve(levels.bricks.length * length);
     levels.bricks.forEach((bricks, index) => {
       const entry = game.machine.record("LevelEntry", table + index * length);
@@ -104,6 +100,16 @@ export class Arkanoid {
     const { image, length } = this.manifest.meetings;
     machine.bytes(machine.reserve(length), length).set(fromBase64(image));
     return new Meeting(machine);
+  }
+}
+
+/** Refuse numbers that `envs/config.py` refuses. Where there is no difficulty, it rises. */
+function checkLimits(config, limits) {
+  for (const [name, [least, most]] of Object.entries(limits)) {
+    const value = name === "difficulty" ? config[name] ?? least : config[name];
+    if (!(value >= least && value <= most)) {
+      throw new RangeError(`${name} is ${config[name]}, and not from ${least} to ${most}`);
+    }
   }
 }
 

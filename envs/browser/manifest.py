@@ -13,7 +13,7 @@ from .. import rules, state
 from ..actions import COMMANDS, action_meanings
 from ..batch.recorder import CHECK_EVERY
 from ..batch.replays import NOTE_EVERY, plain_plan
-from ..config import Config
+from ..config import LIMITS, WHOLE_LIMITS, Config
 from ..draw.view import FULL_HEIGHT, FULL_WIDTH, WALL_WIDTH
 from ..game.rulebook import Rules
 from ..levels.files import level_names, load_level
@@ -30,12 +30,12 @@ from ..levels.motifs import MOTIFS
 from ..levels.plan import plan_levels
 from ..levels.starts import AS_THE_CONFIGURATION_SAYS
 from ..play.by_hand import BY_HAND
+from ..play.hearing import TONES
 from ..registration import resolve_config
 from ..state import INFO_FIELDS, INFO_MEANINGS
 from .collisions import describe_meetings
 from .image import Image, lay_out
-from .network import ACTIVATIONS
-from .records import Block, Board, Game, Network, Picture
+from .records import Block, Board, Game, Hearing, Network, Operation, Picture
 
 RECORDS = {
     "Game": Game,
@@ -44,9 +44,11 @@ RECORDS = {
     "Rules": Rules,
     "LevelEntry": state.LevelEntry,
     "Picture": Picture,
+    "Hearing": Hearing,
     "Board": Board,
     "Block": Block,
     "Network": Network,
+    "Operation": Operation,
     "Meeting": Meeting,
 }
 _RULES = (
@@ -103,6 +105,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
         "view": {"width": FULL_WIDTH, "height": FULL_HEIGHT, "wall": WALL_WIDTH},
         "checksums": {"every": CHECK_EVERY, "noted": NOTE_EVERY},
         "defaults": Config().plain(),
+        "limits": WHOLE_LIMITS | LIMITS,
         "start": AS_THE_CONFIGURATION_SAYS,
         "infos": {
             key: {"field": field, "meaning": INFO_MEANINGS[key]}
@@ -116,7 +119,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
             "silver": [0.0, MAX_SILVER],
             "gold": [0.0, MAX_GOLD],
         },
-        "activations": ACTIVATIONS,
+        "tones": [tone.name for tone in TONES],
         "meetings": describe_meetings(),
         "levels": [_level(name) for name in level_names()],
         "games": {name: _game(config) for name, config in games.items()},

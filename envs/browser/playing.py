@@ -8,9 +8,11 @@ from ...physics.kernels.portable import array_at
 from ..actions import decode_velocities
 from ..batch.stepping import reset_worlds, step_worlds
 from ..game.random import mix_seed
+from ..game.shapes import fit_paddle
 from ..observe.planes import ANY_CELL, MAX_MARKS
 from ..observe.shown import UNKNOWN
-from ..state import World
+from ..play.hearing import hear
+from ..state import Outcome, World
 from ..tensors.arrays import HERE
 from ..tensors.playing import (
     BOOL,
@@ -67,6 +69,12 @@ def steer_game(address: int, game: Any) -> None:
 
 
 @kernel
+def fit_game(game: Any) -> None:
+    """Let the paddle be as wide as the game says."""
+    fit_paddle(rules_of(game.arrays)[0], game.paddle)
+
+
+@kernel
 def forget_game(game: Any) -> None:
     """Note that observations show anything, because another state has come."""
     arrays = game.arrays
@@ -76,6 +84,14 @@ def forget_game(game: Any) -> None:
         row[1] = 1
         row[2] = 1
     array_at(arrays.marks, (1 + MAX_MARKS,), INT32)[0] = ANY_CELL
+
+
+@kernel
+def hear_tick(hearing: Any) -> None:
+    """Write the tones of a tick."""
+    before = array_at(hearing.before, (1,), World)[0]
+    after = array_at(hearing.after, (1,), World)[0]
+    hearing.tones = hear(before, after, array_at(hearing.outcome, (1,), Outcome)[0])
 
 
 @kernel

@@ -11,8 +11,6 @@ from ..tensors.arrays import Arrays
 # The numbers of channels that a picture may have: brightness; red, green and blue; these and
 # opacity, as a canvas takes them.
 CHANNELS = (1, 3, 4)
-# The most layers of a network between observation and outputs.
-MAX_LAYERS = 8
 
 # A game. Its arrays are those of one world; they come first, so both have one address.
 Game = record_dtype(
@@ -21,6 +19,7 @@ Game = record_dtype(
         ("seed", np.uint64),  # of random numbers, for `seed`
         ("velocity", np.float64, (2,)),  # and fire, for `steer`
         ("checksum", np.int64),  # of the states so far, in 32 bits
+        ("paddle", np.float64),  # factor on the paddle's width, for `fit`
     ]
 )
 
@@ -38,6 +37,16 @@ Picture = record_dtype(
         ("length", np.int64),  # of it, in bytes
         ("place", View),
         ("drawn", Drawn),
+    ]
+)
+
+# A tick of a game, for ears.
+Hearing = record_dtype(
+    [
+        ("before", np.int64),  # `World` [1]
+        ("after", np.int64),  # `World` [1]
+        ("outcome", np.int64),  # `Outcome` [1]
+        ("tones", np.int64),  # that are heard, as bits
     ]
 )
 
@@ -69,18 +78,36 @@ Block = record_dtype(
     ]
 )
 
-# A network of an actor and a critic, each of as many layers, and what it says of an observation.
+# One operation of a network over the numbers of its memory, which are counted from the first weight
+# on: what the network computes has negative places.
+Operation = record_dtype(
+    [
+        ("kind", np.int64),  # one of those of `operations`
+        ("target", np.int64),  # the place of its first result
+        ("count", np.int64),  # of its results; of a convolution, their channels
+        ("operands", np.int64, (3,)),  # the places of what it reads
+        ("steps", np.int64, (3,)),  # between two numbers of each operand; 0: always the same
+        ("sizes", np.int64, (3,)),  # of what is read
+        ("window", np.int64),  # of a convolution: rows and columns that it sees at once
+        ("stride", np.int64),
+        ("padding", np.int64),
+    ]
+)
+
+# A network of an actor and a critic, and what it says of an observation.
 Network = record_dtype(
     [
-        ("observation", np.int64),  # float32 [widths[0]]
-        ("weights", np.int64),  # float32: of each layer of the actor [inputs + 1, outputs], the
-        # last row being the bias; then those of the critic
-        ("scratch", np.int64),  # float32 [2, largest width]
-        ("layers", np.int64),
-        ("widths", np.int64, (MAX_LAYERS + 1,)),  # the actor's; the critic's last one is 1
-        ("activation", np.int64),  # between layers, one of `network.ACTIVATIONS`
-        ("outputs", np.int64),  # float32 [widths[layers]]: logits, or the means of a box
-        ("probabilities", np.int64),  # float64, the same length: of each discrete action
+        ("observation", np.int64),  # float32 [inputs], or uint8 [pictures, pixels, channels]
+        ("inputs", np.int64),  # numbers of the observation
+        ("pictures", np.int64),  # that it shows; 0: it is no picture
+        ("channels", np.int64),  # of a picture
+        ("weights", np.int64),  # float32; before them lies what is computed, at first the inputs
+        ("operations", np.int64),  # `Operation` [num_operations]
+        ("num_operations", np.int64),
+        ("outputs", np.int64),  # the place of the logits, or of the means of a box
+        ("num_outputs", np.int64),
+        ("worth", np.int64),  # the place of the value
+        ("probabilities", np.int64),  # float64 [num_outputs]: of each discrete action
         ("action", np.int64),  # the likeliest
         ("value", np.float64),
     ]

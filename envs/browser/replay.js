@@ -50,7 +50,7 @@ export class Replay {
    * Open the game that can play it.
    * @param {Arkanoid} arkanoid
    * @returns {Promise<Game>} one of the manifest's games, which can be observed, if one fits
-   * @throws {RangeError} the replay's paddle is wider or narrower than the browser's
+   * @throws {RangeError} its configuration is none of the game
    */
   async open(arkanoid) {
     const name = this.gameOf(arkanoid.manifest);

@@ -24,13 +24,13 @@ from ..rules import (
     UNBREAKABLE,
 )
 from ..state import SharedRules
-from .shapes import game_shapes, paddle_widths
+from .shapes import fit_paddle, game_shapes
 
 if TYPE_CHECKING:
     from ..config import Config
     from ..levels.plan import LevelPlan
 
-_SHAPES, _EDGES = game_shapes(1.0)
+_SHAPES, _EDGES = game_shapes()
 
 Rules = record_dtype(
     [
@@ -78,9 +78,9 @@ def make_rules(config: "Config", plan: "LevelPlan") -> SharedRules:
     """Return the rules of a validated configuration, `Rules` [1]."""
     rules = np.zeros(1, Rules)
     record = rules[0]
-    shapes, edges = game_shapes(config.paddle)
-    record.shapes[:] = shapes
-    record.edges[:] = edges
+    record.shapes[:] = _SHAPES
+    record.edges[:] = _EDGES
+    fit_paddle(record, config.paddle)
     record.lattice[0] = (0.0, LATTICE_TOP, BRICK_WIDTH, BRICK_HEIGHT, COLUMNS, ROWS)
     for degree in range(92):
         record.sine[degree] = math.sin(math.radians(degree))
@@ -90,9 +90,6 @@ def make_rules(config: "Config", plan: "LevelPlan") -> SharedRules:
     record.brick_values[:] = brick_values()
     record.ball_speed = BALL_SPEED * config.speed
     record.paddle_speed = PADDLE_SPEED
-    width, long_width = paddle_widths(config.paddle)
-    record.paddle_half = width / 2
-    record.long_paddle_half = long_width / 2
     record.frame_skip = config.frame_skip
     record.sticky_action = config.sticky_action
     record.auto_fire = config.actions == "discrete3"

@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+from ...physics.kernels import kernel
+from ...physics.shapes.bounds import bounds_of
 from ...physics.shapes.colliders import (
     AxisAlignedHalfPlane,
     AxisAlignedRectangle,
@@ -11,6 +13,7 @@ from ...physics.shapes.colliders import (
     Particle,
     Rectangle,
 )
+from ...physics.shapes.polygons import close_polygon
 from ...physics.shapes.table import shape_table
 from ..rules import (
     BALL_RADIUS,
@@ -68,13 +71,28 @@ def paddle_collider(width: float) -> Convex:
     )
 
 
-def paddle_widths(paddle: float) -> tuple[float, float]:
-    """Return the paddle's width, plain and enlarged; none is wider than the field.
+@kernel
+def fit_paddle(rules: Any, paddle: float) -> None:
+    """Write how wide the paddle is, plain and enlarged, and its shapes.
 
     Args:
-        paddle: factor on the paddle's width, at most 5.
+        rules: a `Rules` record with the shapes of any paddle.
+        paddle: factor on the paddle's width, at most 5. No paddle is wider than the field.
     """
-    return PADDLE_WIDTH * paddle, min(LONG_PADDLE_WIDTH * paddle, FIELD_WIDTH)
+    rules.paddle_half = PADDLE_WIDTH * paddle / 2
+    rules.long_paddle_half = min(LONG_PADDLE_WIDTH * paddle, FIELD_WIDTH) / 2
+    shapes, edges = rules.shapes, rules.edges
+    for number in (PADDLE_SHAPE, LONG_PADDLE_SHAPE):
+        half = rules.paddle_half if number == PADDLE_SHAPE else rules.long_paddle_half
+        shape = shapes[number]
+        for index in range(shape.first, shape.first + shape.count):
+            edge = edges[index]
+            # The ends slope by 45 degrees: a corner lies as far inside as above or below the tips.
+            x = half - abs(edge.start_y)
+            edge.start_x = x if edge.start_x > 0.0 else -x
+        close_polygon(edges, shape.first, shape.count)
+        bounds = bounds_of(edges, shape.first, shape.count, shape.radius)
+        shape.lower_x, shape.lower_y, shape.upper_x, shape.upper_y = bounds
 
 
 def boss_collider() -> Convex:
@@ -109,17 +127,12 @@ def enemy_colliders() -> list[Collider]:
     ]
 
 
-def game_shapes(paddle: float) -> tuple[Any, Any]:
-    """Return the game's shapes and their edges, as records.
-
-    Args:
-        paddle: factor on the paddle's width.
-    """
-    width, long_width = paddle_widths(paddle)
+def game_shapes() -> tuple[Any, Any]:
+    """Return the game's shapes and their edges, as records; `fit_paddle` changes the paddle's."""
     return shape_table(
         [
-            paddle_collider(width),
-            paddle_collider(long_width),
+            paddle_collider(PADDLE_WIDTH),
+            paddle_collider(LONG_PADDLE_WIDTH),
             Particle(BALL_RADIUS),
             AxisAlignedRectangle(BRICK_WIDTH, BRICK_HEIGHT),
             AxisAlignedRectangle(CAPSULE_WIDTH, CAPSULE_HEIGHT),

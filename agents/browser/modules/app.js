@@ -31,6 +31,7 @@ class App {
     const changed = () => this._parts.watch?.renew();
     /** The run of the first agent, if there is one. */
     this.following = facts.run && new Following(first.name, facts.run, changed);
+    this._held = new Map(); // what keys and the pointer mean that are held, by their codes
     // Some telephones fill the screen with films only.
     document.getElementById("full").hidden = !document.fullscreenEnabled;
     this._button = (id) => document.getElementById(id);
@@ -150,9 +151,10 @@ class App {
       const key = this._meaning(event);
       if (!key) return;
       event.preventDefault();
+      this._held.set(event.code, key);
       if (!event.repeat || this.part?.keys) this.press(key);
     });
-    addEventListener("keyup", (event) => this.part?.release(meaningOf(event)));
+    addEventListener("keyup", (event) => this._release(event.code));
     for (const id of ["pause", "once", "slower", "faster", "sound", "full"]) {
       this._button(id).onclick = (event) => {
         this.press(id);
@@ -160,17 +162,33 @@ class App {
         if (event.detail > 0) this.stage.focus();
       };
     }
-    addEventListener("blur", () => this.part?.loseFocus?.());
+    addEventListener("blur", () => {
+      this._held.clear();
+      this.part?.loseFocus?.();
+    });
     const hide = () => document.hidden && this.part?.loseFocus?.();
     document.addEventListener("visibilitychange", hide);
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => this._drop(event));
     addEventListener("pagehide", (event) => event.persisted || this._parts.play?.close());
     this.stage.listen({
-      press: (key) => this.part?.press(key),
-      release: (key) => this.part?.release(key),
+      press: (key) => {
+        this._held.set("pointer", key);
+        this.part?.press(key);
+      },
+      release: (key) => {
+        this._held.set("pointer", key);
+        this._release("pointer");
+      },
       point: (...where) => this.part?.point(...where),
     });
+  }
+
+  /** Let go what a key or the pointer means, unless another one still means it. */
+  _release(code) {
+    const key = this._held.get(code);
+    this._held.delete(code);
+    if (![...this._held.values()].includes(key)) this.part?.release(key);
   }
 
   /** Show a file that is dropped anywhere on the page. */

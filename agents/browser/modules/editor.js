@@ -82,25 +82,40 @@ export class Editor {
     if (key in WAYS) this._move(...WAYS[key]);
     else if (key.startsWith("brush ")) this._choose(key.at(-1));
     else if (key === "undo" || key === "redo") this[key]();
-    else if (key === "paint") this._stroke(() => this._paint(this._cell));
+    else if (key === "paint") this._stroke(() => this._paint([this._cell]));
   }
 
   release(key) {
-    if (key === "fire") this._stroking = false;
+    if (key !== "fire") return;
+    this._stroking = false;
+    this._place = null;
   }
 
   /** Follow the pointer, and paint while it is held. */
   point(x, y, held) {
-    const { LATTICE_TOP, BRICK_HEIGHT, COLUMNS, ROWS } = this._rules;
-    const [row, column] = [Math.floor((LATTICE_TOP - y) / BRICK_HEIGHT), Math.floor(x)];
-    const inside = row >= 0 && row < ROWS && column >= 0 && column < COLUMNS;
-    this._cell = inside ? row * COLUMNS + column : null;
+    const cells = this._cellsTo(x, y, held);
+    this._cell = cells.at(-1);
     this.app.stage.stale = true;
     if (!held) this._stroking = false;
-    else if (this._cell !== null) {
-      if (this._stroking) this._paint(this._cell);
-      else this._stroking = this._stroke(() => this._paint(this._cell));
-    }
+    else if (this._stroking) this._paint(cells);
+    else this._stroking = this._stroke(() => this._paint(cells));
+  }
+
+  /** @returns {Array<number | null>} the cells from the last place of a stroke to this one */
+  _cellsTo(x, y, held) {
+    const { LATTICE_TOP, BRICK_HEIGHT, BRICK_WIDTH, COLUMNS, ROWS } = this._rules;
+    const place = [x / BRICK_WIDTH, (LATTICE_TOP - y) / BRICK_HEIGHT];
+    const before = (held && this._place) || place;
+    this._place = held ? place : null;
+    // A fast pointer passes several cells from one event to the next.
+    const ways = place.map((end, axis) => end - before[axis]);
+    const steps = Math.ceil(2 * Math.max(...ways.map(Math.abs)));
+    return Array.from({ length: steps + 1 }, (_, step) => {
+      const part = steps ? step / steps : 1;
+      const [column, row] = ways.map((way, axis) => Math.floor(before[axis] + part * way));
+      const inside = row >= 0 && row < ROWS && column >= 0 && column < COLUMNS;
+      return inside ? row * COLUMNS + column : null;
+    });
   }
 
   tick() {
@@ -202,14 +217,14 @@ export class Editor {
     this._set(from.pop());
   }
 
-  _paint(cell) {
-    if (cell === null) return;
+  _paint(cells) {
+    const { COLUMNS } = this._rules;
     const letters = Array.from(this._level.bricks);
-    letters[cell] = this._brush;
-    if (this._find("mirrored").checked) {
-      const { COLUMNS } = this._rules;
+    for (const cell of cells) {
+      if (cell === null) continue;
+      letters[cell] = this._brush;
       const column = cell % COLUMNS;
-      letters[cell - column + COLUMNS - 1 - column] = this._brush;
+      if (this._find("mirrored").checked) letters[cell - 2 * column + COLUMNS - 1] = this._brush;
     }
     this._set(letters.join(""));
   }

@@ -69,6 +69,20 @@ export class StartForm {
     return this._choices.find(({ name }) => name === chosen);
   }
 
+  /** What is chosen and typed, for later. */
+  get state() {
+    const { choice: { name }, _level: level, _seed: seed, _difficulty: difficulty } = this;
+    return { name, own: this._own, values: [level, seed, difficulty].map(({ value }) => value) };
+  }
+
+  set state({ name, own, values }) {
+    this._form.querySelector(`input[value="${name}"]`).checked = true;
+    this._own = own;
+    this._fill();
+    [this._level.value, this._seed.value, this._difficulty.value] = values;
+    this._fill(false);
+  }
+
   /** @returns {object} how the game begins, for `Game.reset`, without a seed */
   get options() {
     const { value } = this._level;

@@ -9,7 +9,7 @@ const GAMES = [
   { name: "full", title: "Full", hint: "Capsules, enemies and a boss.", game: "full by hand" },
   { name: "lite", title: "Lite", hint: "Ball and bricks only.", game: "lite by hand" },
 ];
-const QUESTIONS = { restart: "Restart?", next: "Next round?" };
+const QUESTIONS = { restart: "Restart?", next: "Next round?", change: "Change the game?" };
 const SHOWN_SCORES = 5;
 
 export class Play {
@@ -23,10 +23,10 @@ export class Play {
     this.phase = "opening";
     this._panel = app.panel("play");
     const form = this._panel.querySelector("form");
-    this._form = new StartForm(form, app.arkanoid.manifest, "Game", GAMES, () => this._layOut());
+    this._form = new StartForm(form, app.arkanoid.manifest, "Game", GAMES, () => this._change());
     form.onsubmit = (event) => {
       event.preventDefault();
-      this._goOn();
+      if (this.phase !== "asked") this._goOn();
     };
     for (const button of this._panel.querySelectorAll("[data-do]")) {
       button.onclick = () => this[button.dataset.do]();
@@ -86,7 +86,7 @@ export class Play {
   /** Lay out a game with a level of the editor. */
   offer(level) {
     this._form.offer(level);
-    this._layOut();
+    this._change();
   }
 
   restart() {
@@ -138,7 +138,7 @@ export class Play {
     const { world } = game;
     this.app.speaker.before(game);
     this._recorder.step(this._controls.command(world.paddle_x, this._rules.paddle_speed));
-    this.app.speaker.after(game);
+    this.app.speaker.after();
     if (world.lives_lost && !game.over) this.app.say(`Life lost. ${world.lives} left.`);
     this._roundTicks = world.rounds_cleared ? 0 : this._roundTicks + 1;
     if (world.rounds_cleared) this.app.say(`Round ${world.round_number}: ${roundTitle(game)}.`);
@@ -168,6 +168,7 @@ export class Play {
     if (this._turn !== turn) return; // another one was asked for meanwhile
     this._recorder = this._recorders[name];
     this._rules = this.game.machine.record("Rules", this.game.address("rules"));
+    this._laidOut = this._form.state;
     this._options = this._form.options;
     this._recorder.reset({ seed: randomSeed(), ...this._options });
     this._roundTicks = this._sitting.title;
@@ -210,11 +211,21 @@ export class Play {
     return `${this.game.name} ${JSON.stringify(this._options)}`;
   }
 
+  /** The form says something else. */
+  _change() {
+    if (!this._begun) this._layOut();
+    // A further change is no answer.
+    else if (this.phase !== "asked" || this._asked !== "change") this._ask("change");
+  }
+
   /** Lay out another game; if this one has begun, only when asked a second time. */
   _ask(key) {
+    if (key !== "change" && this._laidOut) this._form.state = this._laidOut;
     if (this._begun && !(this.phase === "asked" && this._asked === key)) {
       this._asked = key;
       this._enter("asked");
+      this.app.stage.frame.scrollIntoView({ block: "nearest" });
+      this.app.say(QUESTIONS[key]);
       return;
     }
     if (key === "next") this._form.chooseRound(this.game.world.round_number + 1);
@@ -228,6 +239,7 @@ export class Play {
     this.app.stage.focus();
     const { rules } = this.app.arkanoid.manifest;
     const wait = (1000 * this._sitting.over) / rules.TICKS_PER_SECOND;
+    if (this.phase === "asked") this._form.state = this._laidOut;
     if (this.phase !== "over") this._enter("playing");
     else if (performance.now() - this._overSince >= wait) this._layOut();
   }

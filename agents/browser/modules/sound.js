@@ -1,12 +1,15 @@
 // Sound: a few tones, made from their formulas. Which there are, and when, Python's sources say.
 
+import { Ears } from "arkanoid/hearing";
+
 const APART = 1 / 60; // seconds between two of the same tones, at least
 
 /** Plays tones. It is off at first. */
 export class Speaker {
-  /** @param {object} hearing the loudness, the tones, and what they stand for */
+  /** @param {object} hearing the loudness, and the tones by their names */
   constructor(hearing) {
     this._hearing = hearing;
+    this._all = new WeakMap(); // ears, by their games
     this._began = {}; // when tones began last, by their names
     this.on = false;
   }
@@ -18,38 +21,20 @@ export class Speaker {
     if (this._context) this.on ? this._context.resume() : this._context.suspend();
   }
 
-  /** Remember the balls before a tick. */
-  before({ world }) {
-    if (!this.on) return;
-    const { ball_state: state, ball_vx: vx, ball_vy: vy } = world;
-    this._balls = { state: state.slice(), vx: vx.slice(), vy: vy.slice() };
+  /** Listen before a tick. */
+  before(game) {
+    this._ears = this.on ? this._earsIn(game) : null;
+    this._ears?.listen();
   }
 
   /** Play what is heard of a tick. */
-  after(game) {
-    if (!this.on || !this._balls) return;
-    for (const tone of this._tonesOf(this._balls, game)) this._play(tone);
+  after() {
+    for (const tone of this._ears?.hear() ?? []) this._play(tone);
   }
 
-  /** @returns {string[]} the tones of a tick, as `envs/play/hearing.py` chooses them */
-  _tonesOf(before, { world, outcome, machine }) {
-    const { counted, paddleReach } = this._hearing;
-    const { FLYING } = machine.manifest.state;
-    const tones = Object.keys(counted).filter((field) => outcome[field] > 0);
-    const { ball_state: state, ball_vx: vx, ball_vy: vy, ball_y: y } = world;
-    let paddle = false;
-    let wall = false;
-    state.forEach((now, ball) => {
-      if (now !== FLYING || before.state[ball] !== FLYING) return;
-      const turnedX = Math.sign(before.vx[ball]) !== Math.sign(vx[ball]);
-      const turnedY = Math.sign(before.vy[ball]) !== Math.sign(vy[ball]);
-      paddle ||= turnedY && y[ball] < paddleReach && vy[ball] > 0;
-      wall ||= turnedX || turnedY;
-    });
-    const names = tones.map((field) => counted[field]);
-    if (paddle) names.push("PADDLE");
-    else if (!names.length && wall) names.push("WALL");
-    return names;
+  _earsIn(game) {
+    if (!this._all.has(game)) this._all.set(game, new Ears(game));
+    return this._all.get(game);
   }
 
   /** Play a gliding sine with an octave in it, which fades. */

@@ -180,7 +180,7 @@ export class Viewer {
     const { commands } = this._replay;
     this.app.speaker.before(this._game);
     this._game.step([commands[2 * this._at], commands[2 * this._at + 1]]);
-    this.app.speaker.after(this._game);
+    this.app.speaker.after();
     this._at += 1;
   }
 

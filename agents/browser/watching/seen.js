@@ -1,4 +1,4 @@
-// What agents see: a vector by its parts, and the field's planes.
+// What agents see: a vector by its parts, the field's planes, or pictures.
 
 import { make } from "arkanoid/data";
 
@@ -69,6 +69,39 @@ export class Planes {
       });
     });
     this._box.replaceChildren(...figures);
+  }
+}
+
+/** The latest pictures, the newest last. */
+export class Pictures {
+  /** @param {HTMLElement} box which is filled */
+  constructor(box) {
+    this._box = box;
+  }
+
+  show(game, agent) {
+    if (agent !== this._agent) this._begin(agent);
+    const { pictures: seen, sees: { channels } } = agent;
+    let place = 0;
+    for (const [pen, image] of this._images) {
+      for (let pixel = 0; pixel < image.data.length; pixel += 4, place += channels) {
+        const colours = [0, channels >> 1, channels - 1].map((channel) => seen[place + channel]);
+        image.data.set([...colours, 255], pixel);
+      }
+      pen.putImageData(image, 0, 0);
+    }
+  }
+
+  _begin(agent) {
+    this._agent = agent;
+    const { size: [height, width], pictures } = agent.sees;
+    const made = Array.from({ length: pictures }, () => {
+      const canvas = make("canvas", { width, height, className: "map" });
+      canvas.style.aspectRatio = `${width} / ${height}`;
+      return canvas;
+    });
+    this._images = made.map((canvas) => [canvas.getContext("2d"), new ImageData(width, height)]);
+    this._box.replaceChildren(...made.map((canvas) => make("figure", {}, canvas)));
   }
 }
 

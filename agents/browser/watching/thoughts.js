@@ -3,10 +3,17 @@
 import { make } from "arkanoid/data";
 
 const REMEMBERED = 1200; // ticks
+const COMMANDS = ["LEFT", "RIGHT", "FIRE"];
 
 /** @returns {string} an action's meaning, in words */
 function wordsOf(meaning) {
   return meaning.replace("NOOP", "STAY").replace(/^(LEFT|RIGHT)(?=FIRE)/, "$1 + ").toLowerCase();
+}
+
+/** @returns {number[]} how much of the full speed goes to each side, and whether it fires */
+function sharesOf([velocity, fire]) {
+  const part = Math.max(-1, Math.min(1, velocity));
+  return [Math.max(0, -part), Math.max(0, part), fire > 0 ? 1 : 0];
 }
 
 export class Thoughts {
@@ -17,10 +24,10 @@ export class Thoughts {
     this._pen = this._canvas.getContext("2d");
   }
 
-  /** Begin with another agent, whose actions have these meanings. */
+  /** Begin with another agent, whose actions have these meanings; null: they are velocities. */
   begin(meanings) {
     this._values = [];
-    this._rows = meanings.map((meaning) => {
+    this._rows = (meanings ?? COMMANDS).map((meaning) => {
       const bar = make("i");
       const number = make("b");
       const track = make("span", { className: "bar-of" }, bar);
@@ -41,12 +48,14 @@ export class Thoughts {
     this._values = [];
   }
 
-  /** @param {{action: number, value: number, probabilities: number[]}} judgement */
+  /** @param {Judgement} judgement see `network.js` */
   show({ action, value, probabilities }) {
+    const shares = Array.isArray(action) ? sharesOf(action) : probabilities;
     this._rows.forEach(({ row, bar, number }, index) => {
-      row.className = index === action ? "chosen" : "";
-      bar.style.transform = `scaleX(${probabilities[index].toFixed(3)})`;
-      number.textContent = `${Math.round(100 * probabilities[index])} %`;
+      const chosen = Array.isArray(action) ? shares[index] > 0 : index === action;
+      row.className = chosen ? "chosen" : "";
+      bar.style.transform = `scaleX(${shares[index].toFixed(3)})`;
+      number.textContent = `${Math.round(100 * shares[index])} %`;
     });
     this._value.value = value.toFixed(2);
     this._draw();

@@ -3,12 +3,16 @@
 import { Agent } from "arkanoid/network";
 import { Controls } from "arkanoid/controls";
 import { StartForm, randomSeed, roundTitle } from "arkanoid/levels";
-import { Planes, Seen } from "arkanoid/seen";
+import { Pictures, Planes, Seen } from "arkanoid/seen";
 import { Thoughts } from "arkanoid/thoughts";
 import { Training } from "arkanoid/training";
 
 const SEEN_EVERY = 6; // pictures
 const STILL = matchMedia("(prefers-reduced-motion: reduce)");
+/** What is shown of what agents see, by what they see. */
+const VIEWS = [
+  ["seen", Seen, ["vector"]], ["planes", Planes, ["vector", "grid"]], ["pictures", Pictures, ["rgb"]],
+];
 const LANDING = { colour: "#ffd866", radius: 0.2, height: 1.4 }; // brick widths
 
 export class Watch {
@@ -34,10 +38,10 @@ export class Watch {
     this._landing = document.getElementById("landing");
     this._landing.onchange = () => (app.stage.stale = true);
     this._thoughts = new Thoughts();
-    this._views = [["seen", Seen], ["planes", Planes]].map(([id, View]) => {
+    this._views = VIEWS.map(([id, View, kinds]) => {
       const details = document.getElementById(id);
       details.ontoggle = () => this._see(true);
-      return { details, view: new View(details.lastElementChild) };
+      return { details, kinds, view: new View(details.lastElementChild) };
     });
     this._pictures = 0;
     this._training = app.following && new Training(document.getElementById("training"));
@@ -188,6 +192,10 @@ export class Watch {
   _become(agent) {
     if (agent.game !== this.game) this._thoughts.begin(agent.game.meanings);
     this._agent = agent;
+    this._landing.parentElement.hidden = !this.game.parts.vector.landing_x;
+    for (const { details, kinds } of this._views) {
+      details.hidden = !kinds.includes(agent.sees?.kind);
+    }
     this._rules = this.game.machine.record("Rules", this.game.address("rules"));
     if (agent.config) this._every = agent.config.frame_skip / this.game.config.frame_skip;
   }
@@ -214,7 +222,7 @@ export class Watch {
     this.app.speaker.before(game);
     const steered = () => this._controls.command(world.paddle_x, this._rules.paddle_speed);
     game.step(this._hand ? steered() : this._judgement.action);
-    this.app.speaker.after(game);
+    this.app.speaker.after();
     this._thoughts.note(this._judgement.value);
     this._handTicks -= 1;
     this._roundTicks = world.rounds_cleared ? 0 : this._roundTicks + 1;
@@ -297,6 +305,8 @@ export class Watch {
 
   _see(now) {
     if (!now || !this.game) return;
-    for (const { details, view } of this._views) if (details.open) view.show(this.game);
+    for (const { details, view } of this._views) {
+      if (details.open && !details.hidden) view.show(this.game, this._agent);
+    }
   }
 }

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from arkanoid.envs.levels import load_level
 from arkanoid.envs.levels.generated import generate_level
-from arkanoid.envs.rules import BRICK_LETTERS, COLUMNS
+from arkanoid.envs.rules import BRICK_LETTERS, CELLS, COLUMNS
 from helpers.browser import PHONE, visit, wait_until
 
 # A blue brick within gold.
@@ -63,6 +63,35 @@ def test_painting_with_the_mouse(editor: Any) -> None:
     assert set(bricks(editor)) == {"."}
     editor.get_by_role("button", name="Redo").click()
     assert bricks(editor).count("S") == 6
+
+
+def test_a_fast_pointer_leaves_no_gaps(editor: Any) -> None:
+    """It passed over cells between two events, which stayed empty."""
+    editor.get_by_label("silver").check()
+    editor.mouse.move(*place(editor, 2, 1))
+    editor.mouse.down()
+    editor.mouse.move(*place(editor, 2, 9))
+    editor.mouse.move(*place(editor, 8, 9))
+    editor.mouse.up()
+    assert bricks(editor)[2 * COLUMNS : 3 * COLUMNS] == ".SSSSSSSSS."
+    assert bricks(editor)[9 : 9 * COLUMNS : COLUMNS] == "..SSSSSSS"
+    # The next stroke begins where it begins.
+    editor.mouse.move(*place(editor, 16, 0))
+    editor.mouse.down()
+    editor.mouse.up()
+    assert bricks(editor).count("S") == 9 + 6 + 1
+    editor.get_by_role("button", name="Undo").click()
+    editor.get_by_role("button", name="Undo").click()
+    assert set(bricks(editor)) == {"."}
+
+
+def test_touches_are_strokes_of_their_own(browser: Any, file: Path) -> None:
+    with visit(browser, f"{file.as_uri()}#editor", **PHONE) as page:
+        wait_until(page, "part?.game && part.still")
+        page.get_by_role("button", name="Clear").tap()
+        for cell in ((3, 1), (15, 9)):
+            page.touchscreen.tap(*place(page, *cell))
+        assert CELLS - bricks(page).count(".") == 2
 
 
 def test_painting_by_keys_alone(editor: Any) -> None:

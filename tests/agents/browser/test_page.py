@@ -2,35 +2,17 @@
 
 import base64
 import json
-import zlib
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
-from arkanoid.envs.batch.batch import Batch
-from arkanoid.envs.batch.recorder import CHECKED, Checked
-from arkanoid.envs.browser.manifest import browser_games
 from arkanoid.envs.levels import load_level
 from arkanoid.envs.play.by_hand import BY_HAND
 from helpers.browser import DESKTOP, PHONE, visit, wait_until
 
 MOST_BYTES = 1_500_000
-ALL = np.ones(1, np.bool_)
-# The checksum of 10,000 decisions of a game, episode after episode.
-DECISIONS = 10_000
-CHECKSUM = """async ([name, actions]) => {
-  const game = await arkanoid.arkanoid.open(name);
-  game.reset({ seed: 5 });
-  game.record.checksum = 0;
-  for (const action of actions) {
-    if (game.over) game.reset();
-    game.step(action);
-    game.note();
-  }
-  return game.record.checksum;
-}"""
 PIXELS = """() => {
   const { width, height } = arkanoid.stage.canvas;
   const { data } = arkanoid.stage.canvas.getContext("2d").getImageData(0, 0, width, height);
@@ -53,26 +35,6 @@ def test_one_file_has_all_and_asks_for_nothing(file: Path) -> None:
     assert len(content) < MOST_BYTES
     assert b'src="http' not in content
     assert b'href="http' not in content
-
-
-@pytest.mark.parametrize("name", ["full", "lite"])
-def test_ten_thousand_decisions_have_the_bits_of_the_processor(page: Any, name: str) -> None:
-    config = browser_games()[name]
-    luck = np.random.default_rng(8)
-    actions = luck.integers(6 if name == "full" else 3, size=DECISIONS)
-    batch = Batch(1, config)
-    batch.reset(ALL, {}, [5])
-    checked = np.zeros((), Checked)
-    checksum = 0
-    for action in actions:
-        if batch.worlds["done"][0]:
-            batch.reset(ALL)
-        batch.command(np.array([action]))
-        batch.step()
-        for field in CHECKED:
-            checked[field] = batch.worlds[field][0]
-        checksum = zlib.crc32(checked.tobytes(), checksum)
-    assert page.evaluate(CHECKSUM, [name, actions.tolist()]) == checksum
 
 
 def test_the_canvas_shows_what_render_returns(page: Any) -> None:
@@ -158,6 +120,63 @@ def test_where_a_game_begins(page: Any) -> None:
     page.get_by_label("Its number").press("Enter")
     wait_until(page, "world.start_seed === 11")
     assert world(page, "start_difficulty") == 0.5
+
+
+def test_another_level_in_the_middle_of_a_game_is_asked_for(page: Any) -> None:
+    """The game was gone at once, by a slip of the mouse or a key."""
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 5")
+    level = page.get_by_label("Level", exact=True)
+    level.select_option("4")
+    assert phase(page) == "asked"
+    assert page.locator("#said").text_content() == "Change the game?"
+    level.select_option("5")  # no answer
+    assert phase(page) == "asked"
+    page.get_by_role("button", name="No, go on").click()
+    assert level.input_value() == "1"
+    wait_until(page, "part.phase === 'playing' && world.round_number === 1")
+    page.get_by_label("Lite").check()
+    assert phase(page) == "asked"
+    page.locator("[data-do=restart]").click()
+    assert page.get_by_label("Full", exact=True).is_checked()
+    page.get_by_role("button", name="No, go on").click()
+    wait_until(page, "part.phase === 'playing' && world.decisions > 5")
+    level.select_option("4")
+    page.get_by_role("button", name="Yes, leave this game").click()
+    wait_until(page, "part.phase === 'ready' && world.round_number === 4")
+
+
+def test_a_level_of_the_editor_in_the_middle_of_a_game_is_asked_for(page: Any) -> None:
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 5")
+    page.get_by_role("link", name="Editor").click()
+    page.locator("[data-edit=play]").click()
+    wait_until(page, "part.phase === 'asked'")
+    assert world(page, "decisions") > 5
+    page.get_by_role("button", name="Yes, leave this game").click()
+    wait_until(page, "part.phase === 'ready' && world.start_kind.some(Boolean)")
+
+
+def test_two_keys_for_one_direction(page: Any) -> None:
+    """When one of them was let go, the paddle stood still, though the other one was held."""
+    page.keyboard.press("Space")
+    wait_until(page, "world.decisions > 0")
+    page.keyboard.down("ArrowLeft")
+    page.keyboard.down("a")
+    page.keyboard.up("ArrowLeft")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[0]") == -1
+    page.keyboard.up("a")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[0]") == 0
+    # The mouse's button is another key for fire.
+    page.locator("#picture").hover()
+    page.keyboard.down("Space")
+    page.mouse.down()
+    page.mouse.up()
+    page.evaluate("arkanoid.part._controls.command(0, 1)")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[1]") == 1
+    page.keyboard.up("Space")
+    page.evaluate("arkanoid.part._controls.command(0, 1)")
+    assert page.evaluate("arkanoid.part._controls.command(0, 1)[1]") == 0
 
 
 def test_high_scores_are_kept(page: Any) -> None:

@@ -117,11 +117,11 @@ def test_what_an_agent_thinks_and_sees(page: Any) -> None:
     assert len(shares) == 6
     assert 97 <= sum(int(share.removesuffix(" %")) for share in shares) <= 103
     assert float(page.locator("#value").text_content()) != 0.0
-    page.get_by_text("What it sees").click()
+    page.locator("#seen summary").click()
     parts = "document.querySelectorAll('.seen div').length"
     wait_until(page, f"{parts} === Object.keys(game.parts.vector).length")
-    page.get_by_text("The same as planes").click()
-    planes = "document.querySelectorAll('.planes figure').length"
+    page.get_by_text("The field as planes").click()
+    planes = "document.querySelectorAll('#planes figure').length"
     wait_until(page, f"{planes} === game.shapes.grid[0]")
 
 

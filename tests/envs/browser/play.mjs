@@ -8,6 +8,7 @@ import { pathToFileURL } from "node:url";
 const [jobs, sources, module, manifest] = process.argv.slice(2);
 const source = (name) => import(pathToFileURL(`${sources}/${name}`));
 const { loadArkanoid } = await source("game.js");
+const { Ears } = await source("hearing.js");
 const { Recorder, Replay } = await source("replay.js");
 const arkanoid = await loadArkanoid(
   readFileSync(module),
@@ -130,6 +131,19 @@ const works = {
     return [first, onward()];
   },
 
+  /** Return the tones of each tick. */
+  async hear({ game: name, actions }) {
+    const game = await arkanoid.open(name);
+    game.reset({ seed: 4 });
+    const ears = new Ears(game);
+    return actions.map((action) => {
+      if (game.over) game.reset();
+      ears.listen();
+      game.step(action);
+      return ears.hear();
+    });
+  },
+
   /** Draw in many sizes, as a page that is resized does, and return how memory grows. */
   async resize({ sizes }) {
     const game = await arkanoid.open("full");
@@ -168,7 +182,8 @@ const works = {
     const { plain, plan } = job;
     const other = await arkanoid.openAs(plain, plan);
     const acts = {
-      paddle: () => arkanoid.openAs({ ...plain, paddle: 2 }, plan),
+      paddle: () => arkanoid.openAs({ ...plain, paddle: 6 }, plan),
+      ticks: () => arkanoid.openAs({ ...plain, frame_skip: 0 }, plan),
       unseen: () => other.vector(),
       game: () => arkanoid.open("chess"),
       number: () => game.step(3),

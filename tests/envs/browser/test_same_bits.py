@@ -33,6 +33,7 @@ from arkanoid.envs.levels.plan import plan_levels
 from arkanoid.envs.observe.planes import GridObserver
 from arkanoid.envs.observe.vector import VectorObserver
 from arkanoid.envs.play.by_hand import BY_HAND
+from arkanoid.envs.play.hearing import tones_of
 from arkanoid.envs.rules import BRICK_LETTERS, CELLS, COLUMNS, GOLD, ROWS
 from arkanoid.envs.state import INFO_FIELDS
 from arkanoid.physics.kernels.portable.wasm import make_wasm
@@ -66,10 +67,12 @@ ELSEWHERE = {
     "one level again and again": {"levels": "seed:7", "difficulty": 0.5, **BY_HAND},
     "two levels": {"levels": ["moat", "warden"], "lives": 1, "reward": "score"},
     "fast": {"speed": 2.5, "life_penalty": 1.0, "deflection": "zones6", "capsules": False},
+    "wide": {"paddle": 3.1, "frame_skip": 1, "actions": "box"},
+    "narrow": {"paddle": 0.25, "deflection": "physical", "levels": "warden", "lives": 9},
     "without fire": {"actions": "discrete3", "frame_skip": 2, "enemies": False, "levels": "train"},
 }
 RULES = [
-    *(config for config in GAMES.values() if config.paddle == 1.0),
+    *GAMES.values(),
     *(Config.from_keywords(keywords) for keywords in ELSEWHERE.values()),
 ]
 # How many decisions of random play are compared, in `PART`s.
@@ -219,6 +222,7 @@ def jobs() -> dict:
             "game": "everything",
             "actions": random_actions(GAMES["everything"], 100, 7),
         },
+        "hear": playing("everything", 4, {}, 5000) | {"work": "hear"},
         "resize": {"work": "resize", "sizes": RESIZED},
         "names": {"work": "names"},
         "mistakes": {
@@ -306,6 +310,21 @@ def test_a_restored_state_goes_on_as_before(done: dict) -> None:
     assert first == again
 
 
+def test_what_is_heard(done: dict) -> None:
+    batch, heard = Batch(1, GAMES["everything"]), []
+    batch.reset(ALL, None, [4])
+    for action in random_actions(GAMES["everything"], 5000, 4):
+        if batch.worlds["done"][0]:
+            batch.reset(ALL)
+        before = batch.worlds[0].copy()
+        batch.command(np.array([action]))
+        batch.step()
+        tones = tones_of(before, batch.worlds[0], batch.outcomes[0])
+        heard.append([tone.name for tone in tones])
+    assert done["hear"] == heard
+    assert {name for names in heard for name in names} >= {"WALL", "BRICK", "LIFE_LOST"}
+
+
 def test_a_page_that_is_resized_takes_no_more_and_more_memory(done: dict) -> None:
     """Each size took memory of its own, which nobody gave back."""
     found = done["resize"]
@@ -349,7 +368,8 @@ def test_fields_have_their_names(done: dict) -> None:
         "state": "these bytes are no state",
         "nothing": "this is no replay",
         "damaged": "the replay is damaged",
-        "paddle": "the paddle is 2 times as wide as the browser's",
+        "paddle": "paddle is 6, and not from 0.25 to 5",
+        "ticks": "frame_skip is 0, and not from 1 to 1000",
         "unseen": "a game can't be observed",
         "early": "a recording begins with a reset",
     }.items(),
