@@ -59,8 +59,10 @@ class App {
       panel.hidden = panel.id !== `panel-${name}`;
     }
     for (const link of document.querySelectorAll("nav a")) {
-      if (link.hash === `#${name}`) link.setAttribute("aria-current", "page");
-      else link.removeAttribute("aria-current");
+      if (link.hash === `#${name}`) {
+        link.setAttribute("aria-current", "page");
+        document.title = `${link.textContent} – Arkanoid`;
+      } else link.removeAttribute("aria-current");
     }
     const part = (this._parts[name] ??= new PARTS[name](this));
     this.part = part;
