@@ -1,13 +1,12 @@
 """The page as one HTML file, which needs no other file and no network.
 
-Its modules import each other by bare names, ``"arkanoid/play"``, which an import map resolves to
-``data:`` addresses. What is large is packed by zlib.
+What is large is packed, and so are its modules. These import each other by bare names,
+``"arkanoid/play"``, for which ``markup/unpack.js`` makes addresses.
 """
 
 import json
 import re
-import zlib
-from base64 import b64encode
+from base64 import b64decode
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib import resources
@@ -19,6 +18,7 @@ from ...envs.browser.shipped import game_module
 from ...envs.config import MOST_DECISIONS, Config
 from .agents import BrowserAgent
 from .facts import page_facts, page_icon
+from .packing import pack, split_planes
 
 # The parts of the page: the names of their addresses and panels, and of their tabs.
 _PARTS = {
@@ -58,12 +58,22 @@ def make_page(
     games = {name: game for name, game in browser_games().items() if name in _GAMES}
     shown = [{"name": agent.name, "game": _add_game(games, agent)} for agent in agents]
     facts = page_facts() | {"agents": shown, "run": run, "asked": asked}
+    manifest = make_manifest(games)
+    # Base64 hides that they are nearly the same.
+    images = [b64decode(game["image"]) for game in manifest["games"].values()]
+    for game, image in zip(manifest["games"].values(), images, strict=True):
+        game["image"] = len(image)
     data = {
+        "modules": _json(_modules()),
         "code": game_module(),
-        "manifest": _json(make_manifest(games)),
+        "images": b"".join(images),
+        "manifest": _json(manifest),
         "facts": _json(facts),
     }
-    data |= {f"agent-{agent.name}": agent.network for agent in agents if agent.network}
+    elements = [_element(name, content) for name, content in data.items()]
+    elements += [
+        _element(f"agent-{agent.name}", agent.network, width=4) for agent in agents if agent.network
+    ]
     return _fill(
         _read("index.html"),
         {
@@ -73,8 +83,8 @@ def make_page(
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
             "scene": _read("scene.html"),
             "panels": "\n".join(map(_panel, _PARTS)),
-            "imports": json.dumps({"imports": _imports()}),
-            "data": "\n".join(_data(name, content) for name, content in data.items()),
+            "unpack": _read("unpack.js"),
+            "data": "\n".join(elements),
         },
     )
 
@@ -102,27 +112,29 @@ def _panel(name: str) -> str:
     return f'<section class="panel" id="panel-{name}" hidden>\n{_read(f"{name}.html")}</section>'
 
 
-def _imports() -> dict[str, str]:
-    """Return the address of each module, by its name."""
+def _modules() -> dict[str, str]:
+    """Return the code of each module, by its name."""
     rooms = [_HERE / name for name in ("modules", "watching", "collisions")]
     return {
-        f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
+        f"{_PREFIX}{file.name.removesuffix('.js')}": _code(file)
         for folder in (resources.files(machine_room), *rooms)
         for file in sorted(folder.iterdir(), key=lambda file: file.name)
         if file.name.endswith(".js")
     }
 
 
-def _address(file: Any) -> str:
+def _code(file: Any) -> str:
     code = _RELATIVE.sub(rf'"{_PREFIX}\1"', file.read_text(encoding="utf-8"))
     # The last line is the name that browsers show where something fails.
-    content = f"{code}//# sourceURL={_PREFIX}{file.name}\n".encode()
-    return f"data:text/javascript;base64,{b64encode(content).decode()}"
+    return f"{code}//# sourceURL={_PREFIX}{file.name}\n"
 
 
-def _data(name: str, content: bytes) -> str:
-    packed = b64encode(zlib.compress(content, 9)).decode()
-    return f'<script type="text/plain" id="data-{escape(name)}">{packed}</script>'
+def _element(name: str, content: bytes, width: int = 1) -> str:
+    """Return an element that holds bytes: of numbers that have `width` bytes each."""
+    packed = pack(split_planes(content, width))
+    return (
+        f'<script type="text/plain" id="data-{escape(name)}" data-width="{width}">{packed}</script>'
+    )
 
 
 def _json(value: object) -> bytes:

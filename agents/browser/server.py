@@ -9,7 +9,7 @@ from .following import FollowedRun
 HOST = "127.0.0.1"
 # Nothing of another place is loaded, whatever the page's data say.
 _POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data:; "
+    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; "
     "style-src 'unsafe-inline'; img-src data: blob:; connect-src 'self'; "
     "form-action 'none'; frame-ancestors 'self'"
 )

@@ -158,7 +158,7 @@ export class Game {
     this._image = image;
     const start = machine.reserve(image.length);
     if (start !== machine.manifest.free) throw new Error("a game lies at the memory's beginning");
-    const content = fromBase64(image.image);
+    const content = image.image instanceof Uint8Array ? image.image : fromBase64(image.image);
     machine.bytes(start, content.length).set(content);
     const at = image.addresses;
     this.record = machine.record("Game", at.game);

@@ -72,8 +72,10 @@ class App {
       panel.hidden = panel.id !== `panel-${name}`;
     }
     for (const link of document.querySelectorAll("nav a")) {
-      if (link.hash === `#${name}`) link.setAttribute("aria-current", "page");
-      else link.removeAttribute("aria-current");
+      if (link.hash === `#${name}`) {
+        link.setAttribute("aria-current", "page");
+        document.title = `${link.textContent} – Arkanoid`;
+      } else link.removeAttribute("aria-current");
     }
     const part = (this._parts[name] ??= new PARTS[name](this));
     this.part = part;
@@ -242,21 +244,21 @@ function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-async function begin() {
-  if (!document.getElementById("end")) throw new Error("the page has no end");
-  const names = ["manifest", "facts"];
-  const [code, manifest, facts] = await Promise.all([bytesOf("code"), ...names.map(jsonOf)]);
-  const app = new App(await loadArkanoid(code, manifest), facts);
-  await app.show(partOf(location.hash));
-  app.run();
-  /** For tests, and for whoever is curious. */
-  globalThis.arkanoid = app;
+/** Put the images of the games, which are packed apart, into the manifest. */
+function join(manifest, images) {
+  let end = 0;
+  for (const game of Object.values(manifest.games)) {
+    game.image = images.subarray(end, (end += game.image));
+  }
 }
 
-try {
-  await begin();
-} catch (error) {
-  document.getElementById("notice").textContent =
-    "The game does not start. The page is not complete, or its site forbids WebAssembly.";
-  throw error;
-}
+const [code, images, manifest, facts] = await Promise.all([
+  ...["code", "images"].map(bytesOf),
+  ...["manifest", "facts"].map(jsonOf),
+]);
+join(manifest, images);
+const app = new App(await loadArkanoid(code, manifest), facts);
+await app.show(partOf(location.hash));
+app.run();
+/** For tests, and for whoever is curious. */
+globalThis.arkanoid = app;

@@ -1,16 +1,7 @@
 // What the page holds beside its modules: JSON, and packed bytes.
 
-import { fromBase64 } from "arkanoid/game";
-
-/**
- * @param {string} name of an element of the page
- * @returns {Promise<Uint8Array>} the bytes that it holds: zlib's, as base64
- */
-export async function bytesOf(name) {
-  const packed = fromBase64(document.getElementById(`data-${name}`).textContent);
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
+/** As the page unpacks its modules; see markup/unpack.js. */
+export const bytesOf = globalThis.unpack;
 
 /** @returns {Promise<*>} what an element's bytes say as JSON */
 export async function jsonOf(name) {

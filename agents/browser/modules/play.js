@@ -259,7 +259,7 @@ export class Play {
     const [best] = this.app.scores.best(this._scoresName);
     const notice = this._roundNotice();
     if (best) notice.lines.push(`High score ${best.score}`);
-    const small = this.app.stage.narrow && navigator.maxTouchPoints > 0
+    const small = matchMedia("(hover: none)").matches
       ? "Drag to move, tap to fire"
       : "Mouse or arrow keys move, space fires";
     return { ...notice, buttons: [["Start", () => this._goOn()]], small, band: true };

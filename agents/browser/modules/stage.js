@@ -6,7 +6,7 @@ const NARROW = matchMedia("(max-width: 52rem)");
 const MOST_SCALE = 120; // device pixels per brick width
 const LEAST_SCALE = 8;
 const PANEL = 21 * 16 + 32; // CSS pixels beside the picture: the panel and the gap
-const LEAST_HEIGHT = 416; // CSS pixels; where less is visible, one scrolls
+const LEAST_HEIGHT = 416; // CSS pixels; where less is visible, the controls are below
 const SETTLED = 120; // milliseconds after which a window has its new size
 const TAP = { seconds: 0.3, way: 10 }; // CSS pixels
 
@@ -70,9 +70,11 @@ export class Stage {
   _room() {
     if (document.fullscreenElement) return [innerWidth, innerHeight];
     const { clientWidth } = document.body; // without the bar for scrolling
-    const bars = document.querySelector(".top").offsetHeight + 60;
+    const top = document.querySelector(".top").offsetHeight + 8;
+    const bars = top + 52;
     if (!NARROW.matches) {
-      return [clientWidth - PANEL - 32, Math.max(LEAST_HEIGHT, innerHeight - bars - 32)];
+      const least = Math.min(LEAST_HEIGHT, innerHeight - top);
+      return [clientWidth - PANEL - 32, Math.max(least, innerHeight - bars - 32)];
     }
     const strip = this._strip.offsetHeight;
     return [clientWidth, innerHeight - bars - (strip && strip + 8) - 8];
@@ -115,11 +117,6 @@ export class Stage {
     if (small) parts.push(make("p", { className: "small" }, small));
     this._notice.className = band ? "notice band" : "notice";
     this._notice.replaceChildren(...parts);
-  }
-
-  /** Whether the panel is below the picture, and not beside it. */
-  get narrow() {
-    return NARROW.matches;
   }
 
   /** Offer a strip below the picture for steering by touch, or take it away. */
