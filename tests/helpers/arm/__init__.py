@@ -75,7 +75,7 @@ def make_program(entries: Sequence[Entry], folder: Path) -> Path:
         _miss("no compiler here: the package ziglang is missing")
     compiled, program = folder / "entries.o", folder / "program"
     compiled.write_bytes(_assemble(compile_entries(entries), entries))
-    source = Path(__file__).with_suffix(".c")
+    source = Path(__file__).with_name("program.c")
     command = [sys.executable, "-m", "ziglang", "cc", *_LINK, str(source), str(compiled)]
     kept = {f"ZIG_{kind}_CACHE_DIR": str(folder / "zig") for kind in ("GLOBAL", "LOCAL")}
     subprocess.run([*command, "-o", str(program)], env=os.environ | kept, check=True)
