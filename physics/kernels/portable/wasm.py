@@ -6,7 +6,6 @@ imports nothing. It exports its memory, and for each entry a function ``NAME(ind
 32-bit integers. An address is a place in the memory.
 """
 
-import re
 import shutil
 import subprocess
 import sys
@@ -42,9 +41,6 @@ define void @{name}_export(i32 %index, i32 %address) "wasm-export-name"="{name}"
   ret void
 }}
 """
-# Numba's code would call it to free an array's memory. What entries work on is never freed.
-_FREES = re.compile(r"^declare ([^\n]*@NRT_MemInfo_call_dtor)\([^\n]*$", re.MULTILINE)
-_NEVER = r"define internal \1(ptr %array) { unreachable }"
 _LINK = (
     *("--no-entry", "--gc-sections", "--strip-all"),
     # A stack that overflows leaves the memory, instead of overwriting constants.
@@ -90,7 +86,7 @@ def _assemble(code: str, entries: Sequence[Entry]) -> bytes:
     llvm.initialize_all_asmprinters()
     target = llvm.Target.from_triple(_TRIPLE)
     machine = target.create_target_machine(features=_FEATURES, opt=3)
-    text = _FREES.sub(_NEVER, retarget(code, _TRIPLE, str(machine.target_data)))
+    text = retarget(code, _TRIPLE, str(machine.target_data))
     exports = [_EXPORT.format(name=entry.name) for entry in entries]
     module = llvm.parse_assembly("".join((text, *exports)))
     exported = {f"{entry.name}_export" for entry in entries}
