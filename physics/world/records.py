@@ -98,6 +98,7 @@ Header = record_dtype(
         ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
         ("inelastic", np.int64),  # 1: some bodies do not bounce
         ("typical", np.float64),  # length: the median of the bodies' sizes
+        ("margin", np.float64),  # of the first box of a typical body, see `lookup.boxes`
         ("cell", np.float64),  # size of the cells of the grid that suit a typical body
         ("has_grid", np.int64),  # 0: so few bodies move that a grid of them is not worth it
         # Where each part of the workspace begins, in bytes, and its number of items where that is

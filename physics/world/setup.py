@@ -15,7 +15,7 @@ from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
-from .lookup.boxes import enter_static, typical_width
+from .lookup.boxes import enter_static, typical_margin, typical_width
 from .lookup.grid import SPARE
 from .lookup.overrides import override_table
 from .lookup.tree import NO_ONE
@@ -152,7 +152,10 @@ def build_setup(
     header["max_hits"], header["continuous"] = max_hits, continuous
     header["inelastic"] = (traits["restitution"] == 0.0).any() or 0.0 in overrides.values()
     header["typical"] = _typical(sizes[traits["boundless"] == 0])
-    header["cell"] = typical_width(header["typical"][0]) * (1.0 + 4.0 * SPARE)
+    typical = float(header["typical"][0])
+    margin = typical_margin(typical, _spacing(positions[traits["boundless"] == 0]))
+    header["margin"] = margin
+    header["cell"] = typical_width(typical, margin) * (1.0 + 4.0 * SPARE)
     header["has_grid"] = len(moving) > FEW_MOVING
     header["bodies"], header["movers"] = len(specs), len(moving)
     header["sensors"] = len(sensing)
@@ -191,6 +194,15 @@ def _typical(sizes: FloatArray) -> float:
     """Return a length that suits most bodies; 1 if all are points."""
     extended = sizes[sizes > 0.0]
     return float(np.median(extended)) if len(extended) else 1.0
+
+
+def _spacing(positions: FloatArray) -> float:
+    """Return how far bodies are apart, about where half of them are; 0 for a few or in a row."""
+    if len(positions) < FEW_MOVING:
+        return 0.0
+    low, high = np.quantile(positions, (0.25, 0.75), axis=0)
+    width, height = 2.0 * (high - low)
+    return float(np.sqrt(width * height / len(positions)))
 
 
 def inseparable_pair(setup: Setup) -> tuple[int, int] | None:

@@ -34,13 +34,14 @@ from .links import move_box
 from .neighbours import TOO_MANY
 from .tree import NO_ONE, clear_tree, insert_leaf
 
-# The margin, in units of the body's size and of the median of all sizes.
+# The margin, in units of the body's size, of the median of all sizes, and of the bodies' distance.
 OWN_SHARE = 1.1
 TYPICAL_SHARE = 1.2
-# A body that may meet more than so many others gets a smaller margin, with fewer a larger one,
+SPACING_SHARE = 0.33
+# A body that may meet more than so many moving ones gets a smaller margin, with fewer a larger one,
 # between these shares of the first one.
-CROWDED = 12
-LONELY = 6
+CROWDED = 8
+LONELY = 1
 LEAST_SHARE = 0.1
 MOST_SHARE = 8.0
 # A box is ahead of the body by this share of the margin, so that the body is in it for longer.
@@ -52,9 +53,19 @@ FAR = 1e-9
 ROUNDING = 4.0 * TOUCH
 
 
-def typical_width(typical: float) -> float:
+def typical_margin(typical: float, spacing: float) -> float:
+    """Return the margin of the first box of a body of typical size.
+
+    Args:
+        typical: the size.
+        spacing: of the bodies, on average.
+    """
+    return typical * max(TYPICAL_SHARE, min(MOST_SHARE, SPACING_SHARE * spacing / typical))
+
+
+def typical_width(typical: float, margin: float) -> float:
     """Return the width of the box of a body of typical size."""
-    return 2.0 * typical * (1.0 + max(OWN_SHARE, TYPICAL_SHARE))
+    return 2.0 * (typical + max(OWN_SHARE * typical, margin))
 
 
 @kernel
@@ -70,7 +81,7 @@ def first_margin(world: WorldView, slot: int) -> float:
     if trait.boundless:
         return math.inf
     reach = _reach(shapes_of(world)[trait.collider])
-    return float(max(OWN_SHARE * reach, TYPICAL_SHARE * header_of(world).typical))
+    return float(max(OWN_SHARE * reach, header_of(world).margin))
 
 
 @kernel
@@ -84,7 +95,7 @@ def next_margin(world: WorldView, slot: int) -> float:
     first = first_margin(world, slot)
     if is_crowded:
         margin *= 0.75
-    elif plan.near < LONELY:
+    elif plan.near < plan.fixed + LONELY:
         margin *= 1.25
     return max(LEAST_SHARE * first, min(MOST_SHARE * first, margin))
 
@@ -102,7 +113,7 @@ def margin_after_hit(world: WorldView, slot: int) -> float:
 @kernel
 def _is_crowded(plan: PlanRecord) -> bool:
     """Return whether a body may meet many others before it leaves its box."""
-    return bool(plan.near > CROWDED or plan.near == TOO_MANY)
+    return bool(plan.near > plan.fixed + CROWDED or plan.near == TOO_MANY)
 
 
 @kernel
