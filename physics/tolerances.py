@@ -60,6 +60,14 @@ SWEEPS = 8
 # geometric series. After so many, all that is left of it is lost at once.
 MOST_AT_ONCE = 32
 
+# A fraction of a body's size. If neither body has gone farther since it was moved last, their hit
+# goes nowhere: where there is no room, or less and less, hits follow each other without end.
+NO_WAY = 1e-4
+
+# Such a hit counts for so many. So squeezed bodies cost a millisecond and not ten, while two blocks
+# may hit each other ten thousand times at distances that one can see.
+HITS_FOR_NOTHING = 10
+
 # How often a body comes to rest before it slides: while bodies that rest on each other slide, the
 # directions may turn, so that they hit each other again, always sooner.
 MOST_RESTS = 8

@@ -2,7 +2,7 @@
 
 from ..kernels import kernel
 from ..pairs.touching import touch_margins
-from ..tolerances import SLIDE, TOUCH
+from ..tolerances import NO_WAY, SLIDE, TOUCH
 from .clock_time import elapsed
 from .records import MotionRecord, PlanRecord
 from .view import WorldView, edges_of, motions_of, plans_of, shapes_of, traits_of
@@ -40,8 +40,10 @@ def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
         way = abs(x - motion.x) + abs(y - motion.y)
         if way > TOUCH * (abs(x) + abs(y)):
             plan.instant = 0
-        if 2.0 * way > short_way(world, body):
+        size = _size_of(world, body)
+        if 2.0 * way > SLIDE * size:
             plan.rests = 0
+        plan.nowhere = not way > NO_WAY * size
         motion.x, motion.y = x, y
         plan.at, plan.at_low = now, now_low
 
@@ -49,8 +51,21 @@ def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
 @kernel
 def short_way(world: WorldView, body: int) -> float:
     """Return how far a body may slide before it looks again what it slides into."""
+    return float(SLIDE * _size_of(world, body))
+
+
+@kernel
+def is_short_way(world: WorldView, body: int) -> bool:
+    """Return whether a body went next to nowhere when it was moved last, or has no mass."""
+    trait = traits_of(world)[body]
+    return bool(trait.inverse_mass == 0.0 or plans_of(world)[trait.slot].nowhere)
+
+
+@kernel
+def _size_of(world: WorldView, body: int) -> float:
+    """Return the width or the height of a body, whichever is less."""
     shape = shapes_of(world)[traits_of(world)[body].collider]
-    return float(SLIDE * min(shape.upper_x - shape.lower_x, shape.upper_y - shape.lower_y))
+    return float(min(shape.upper_x - shape.lower_x, shape.upper_y - shape.lower_y))
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from ..kernels import kernel
 from .clock_time import is_earlier
-from .courses import move_to
+from .courses import is_short_way, move_to
 from .events import contact_point, enter_sensor, has_room, leave_sensors, write_event
 from .lookup.boxes import fit_here, next_margin
 from .meetings.changes import count_hit, plan_after_hit
@@ -26,9 +26,12 @@ from .view import (
 def run_events(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
     """Carry out all plans until the step ends, the earliest first; return how many hits there are.
 
-    It stops earlier if there is no room for more hits, and can be called again to continue. It
-    always ends: a body has no more hits than `max_hits`, and between two of them it enters each
-    sensor at most once, and leaves boxes of which each is twice as large as the one before.
+    It stops earlier if there is no room for more hits, and can be called again to continue.
+
+    It always ends, whatever the numbers are. Every meeting counts as a hit of a body that is not
+    yet held, and no body has more of these than `max_hits` in each of the three stages before.
+    Between two of them a body enters each sensor at most once, looks again at most once, and leaves
+    boxes of which each is twice as large as the one before.
     """
     progress = progress_of(world)
     plans = plans_of(world)
@@ -123,9 +126,10 @@ def _meet(world: WorldView, hits: Hits, count: int, world_index: int, slot: int)
         count = write_event(
             world, hits, count, world_index, HIT, now, a, b, normal_x, normal_y, x, y, impulse
         )
+    is_short = is_short_way(world, a) and is_short_way(world, b)
     # It also counts if it was no hit, so that a step always ends.
     for body in (a, b):
         if inverse_mass_of(world, body) > 0.0:
-            count_hit(world, traits_of(world)[body].slot)
+            count_hit(world, traits_of(world)[body].slot, is_short)
     plan_after_hit(world, a, b, now, now_low)
     return count

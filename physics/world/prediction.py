@@ -16,9 +16,9 @@ from .lookup.boxes import time_to_leave
 from .lookup.inside import find_inside
 from .lookup.neighbours import find_near
 from .lookup.tree import NO_ONE
-from .meetings.passing import passes_by
+from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
-from .records import LEAVE, LOOK, MEET, NOTHING, TraitRecord
+from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
@@ -157,6 +157,9 @@ def _meeting(
     closing = -(ux * normal_x + uy * normal_y)
     margin = margin_along(normal_x, normal_y, margin_x, margin_y)
     if own.sensor < 0 and trait.sensor < 0:
+        if progress_of(world).inert and has_reached(world, body, other, HELD):
+            # So every meeting has a body that it brings closer to being held.
+            return math.inf, 0.0, 0.0, 0.0
         if time == 0.0:
             progress_of(world).touching = 1
         if time * closing <= margin and passes_by(world, body, other, closing):

@@ -79,7 +79,7 @@ Header = record_dtype(
         ("bodies", np.int64),
         ("movers", np.int64),  # bodies that move
         ("sensors", np.int64),
-        ("max_hits", np.int64),  # of one body in one step
+        ("max_hits", np.int64),  # of one body in one step, see `count_hit`
         ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
         ("inelastic", np.int64),  # 1: some bodies do not bounce
         ("typical", np.float64),  # length: the median of the bodies' sizes
@@ -132,7 +132,7 @@ Plan = record_dtype(
         ("time_low", np.float64),
         ("at", np.float64),  # when the body was where its motion says
         ("at_low", np.float64),
-        ("hits", np.int64),  # in this step; from 0 again at each later stage
+        ("hits", np.int64),  # in this step, see `count_hit`; from 0 again at each later stage
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
         ("normal_x", np.float64),  # from this body to its partner
@@ -142,6 +142,7 @@ Plan = record_dtype(
         ("speed", np.float64),  # |vx| + |vy|, the most since a user last wrote it
         ("rests", np.int64),  # how often it has come to rest since it went some way
         ("instant", np.int64),  # hits at the time of its last one
+        ("nowhere", np.int64),  # 1: it went next to nowhere to its last one
         ("stage", np.int64),  # FREE, INERT, CRUSHED or HELD
         ("fresh", np.int64),  # 1: its plan does not hold, and it may overlap others
         # The slots of the bodies that plan to meet this one are a list; -1 where it ends.
@@ -218,6 +219,7 @@ Progress = record_dtype(
         ("full", np.int64),  # 1: there was no room for another hit
         ("touching", np.int64),  # 1: two bodies overlap or touch
         ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
+        ("hits", np.int64),  # of all bodies in this step
         ("inert", np.int64),  # 1: for a body, the hits before decide how it bounces
         ("members", np.int64),  # of the group that is resolved
         ("touches", np.int64),  # between them
@@ -260,7 +262,7 @@ Touch = record_dtype(
         ("aim", np.float64),  # the speed at which they have to recede
         ("change", np.float64),  # of their relative speed, by the impulse
         # See `solver`.
-        ("weight", np.float64),  # the mass that the two have for an impulse
+        ("weight", np.float64),  # the mass that the two have for an impulse; the most is 1
         ("slope", np.float64),
         ("course", np.float64),
         ("bend", np.float64),

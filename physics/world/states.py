@@ -181,7 +181,7 @@ def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> ByteArray
     setup.records(states, "shown_after_step", Motion)[:] = kept["after_step"]
     setup.records(states, "motions", Motion)[:] = kept["motion"]
     plans = setup.records(states, "plans", Plan)
-    for name in ("hits", "rests", "instant", "stage"):
+    for name in ("hits", "rests", "instant", "nowhere", "stage"):
         plans[name] = 0
     for name in _OF_PLANS:
         plans[name] = kept[name]

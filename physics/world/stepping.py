@@ -125,6 +125,7 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
         return INVALID
     progress.crowded = 0
     progress.inert = 0
+    progress.hits = 0
     is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
     if is_calm and clock.planned:
         return count
@@ -281,7 +282,7 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
             # What it passes by in this step, it hits in the next one.
             plan.fresh = 1
             clock.fresh = 1
-        plan.hits = plan.rests = plan.instant = 0
+        plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE
         seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
         after.x, after.y, after.vx, after.vy = x, y, vx, vy

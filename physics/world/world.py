@@ -62,11 +62,13 @@ class World:
             instead: move by dt, detect, relax, bounce.
         max_hits: of one body in one step. A body that has used them up bounces no more in that
             step: it rests on what it hits. `capped` counts that, and there is a `HitLimitWarning`.
-            (Only bodies that are squeezed, or very fast, have so many.)
+            A hit counts tenfold if its bodies have gone less than 1e-4 of their size to it, or if
+            the whole world has had ``max_hits`` in this step. (So a game does not wait long for
+            bodies that are squeezed, or very fast.)
     """
 
     def __init__(
-        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 1000
+        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 10_000
     ) -> None:
         # The scene holds what users edit. From the first step on, until the next edit, the built
         # form is ahead of it.

@@ -2,10 +2,10 @@
 
 from ...kernels import kernel
 from ...tolerances import RESOLVED, ROUGHLY
-from ..courses import move_to
+from ..courses import is_short_way, move_to
 from ..events import contact_point, leave_sensors, write_event
 from ..prediction import find_stale, predict
-from ..records import CRUSHED, HIT, Hits
+from ..records import CRUSHED, HELD, HIT, Hits
 from ..view import (
     WorldView,
     inside_of,
@@ -19,7 +19,10 @@ from .changes import count_hit, count_rest, predict_stale, reach_stage, shrink_b
 from .gathering import gather_due, join_neighbours
 from .pair import turn_velocity
 from .passing import slowest_hit
-from .solver import group_speed, lacking, resolve
+from .solver import group_speed, inverse_masses, lacking, resolve
+
+# A group begins with the body whose meeting is due and, if it moves, its partner.
+FIRST_TWO = 2
 
 
 @kernel
@@ -95,7 +98,7 @@ def _move_on(
                 touch.normal_y,
                 x,
                 y,
-                -touch.change / _inverse_masses(world, touch.one, touch.other),
+                -touch.change / inverse_masses(world, touch),
             )
     return count
 
@@ -124,15 +127,6 @@ def _add_up(world: WorldView) -> None:
 
 
 @kernel
-def _inverse_masses(world: WorldView, one: int, other: int) -> float:
-    """Return the sum of the inverse masses of two members; -1 stands for a static body."""
-    total = members_of(world)[one].inverse_mass
-    if other >= 0:
-        total += members_of(world)[other].inverse_mass
-    return float(total)
-
-
-@kernel
 def _crush(world: WorldView) -> None:
     """Let those have no room, for the rest of the step, that still approach without a bounce."""
     members = members_of(world)
@@ -151,18 +145,25 @@ def _crush(world: WorldView) -> None:
 def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
     """Count the members' hits; make new plans for them, and for who planned to meet them."""
     progress, members, traits = progress_of(world), members_of(world), traits_of(world)
+    is_short = True
+    for index in range(progress.members):
+        if members[index].met > 0:
+            is_short = is_short and is_short_way(world, members[index].body)
     for index in range(progress.members):
         slot = traits[members[index].body].slot
         if members[index].inverse_mass > 0.0:
-            # It also counts if nothing touched, so that a step always ends.
-            for _ in range(1 if progress.touches == 0 else members[index].met):
-                count_hit(world, slot)
+            # For those who had planned it, a meeting counts even if nothing came of it: each one
+            # brings a body closer to `max_hits`, so a step ends.
+            for _ in range(max(members[index].met, 1 if index < FIRST_TWO else 0)):
+                count_hit(world, slot, is_short)
             if members[index].rests:
                 count_rest(world, slot)
     count = 0
     for index in range(progress.members):
-        if members[index].met > 0 and members[index].inverse_mass > 0.0:
-            slot = traits[members[index].body].slot
+        if members[index].inverse_mass == 0.0:
+            continue
+        slot = traits[members[index].body].slot
+        if members[index].met > 0 or plans_of(world)[slot].stage == HELD:
             count = find_stale(world, slot, count)
             shrink_box(world, slot, now, now_low)
     for index in range(progress.members):

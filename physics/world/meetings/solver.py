@@ -12,7 +12,8 @@ least, and there is only one answer for the velocities, whatever the order of th
 
 The method is MPRGP (Z. Dostal, Optimal Quadratic Programming Algorithms, Springer 2009): conjugate
 gradients for the touches that have an impulse, until one would pull; and a step along the others'
-slopes where these are steeper. For n touches it takes about n steps.
+slopes where these are steeper. For n touches it takes about n steps. Slopes are in units of the
+group's speed, and weights of the largest one, so that no square overflows or vanishes.
 """
 
 import math
@@ -40,11 +41,15 @@ def resolve(world: WorldView, tolerance: float) -> bool:
         # As `bounce_velocities` does it, to the bit.
         _change(world, touch, (touch.restitution + 1.0) * _along(world, touch, 0.0))
         return True
+    speed = group_speed(world)
+    if speed == 0.0:
+        return True
     longest = _longest_step(world)
+    _weigh(world)
     is_new = True
     for _ in range(STEPS + STEPS_PER_TOUCH * touches):
-        most, free, bound = _measure(world)
-        if most <= tolerance * group_speed(world):
+        most, free, bound = _measure(world, speed)
+        if most * speed <= tolerance * group_speed(world):
             return True
         if bound > free:
             # Steeper where there is no impulse yet.
@@ -53,24 +58,23 @@ def resolve(world: WorldView, tolerance: float) -> bool:
             if step == math.inf:
                 _settle(world)
                 return False
-            _advance(world, step)
+            _advance(world, step * speed)
             is_new = True
             continue
         if is_new:
             _set_course(world, True)
         else:
             _turn(world)
-        step, allowed = _step_length(world), _allowed_step(world)
+        step, allowed = _step_length(world), _allowed_step(world) / speed
         if step == math.inf and allowed == math.inf:
             _settle(world)
             return False
-        _advance(world, min(step, allowed))
+        _advance(world, min(step, allowed) * speed)
         is_new = step > allowed
         if is_new:
-            _measure(world)
+            _measure(world, speed)
             _set_course(world, True)
-            _find_turns(world)
-            _project(world, longest)
+            _project(world, longest * speed)
     return False
 
 
@@ -105,6 +109,26 @@ def _along(world: WorldView, touch: TouchRecord, more: float) -> float:
 
 
 @kernel
+def inverse_masses(world: WorldView, touch: TouchRecord) -> float:
+    """Return the sum of the inverse masses of the two bodies of a touch."""
+    total = members_of(world)[touch.one].inverse_mass
+    if touch.other >= 0:
+        total += members_of(world)[touch.other].inverse_mass
+    return float(total)
+
+
+@kernel
+def _weigh(world: WorldView) -> None:
+    """Let the heaviest touch weigh 1: only the ratios count, and no square may overflow."""
+    least = math.inf
+    for index in range(progress_of(world).touches):
+        least = min(least, inverse_masses(world, touches_of(world)[index]))
+    for index in range(progress_of(world).touches):
+        touch = touches_of(world)[index]
+        touch.weight = least / inverse_masses(world, touch)
+
+
+@kernel
 def _longest_step(world: WorldView) -> float:
     """Return how far one may go along the slopes without going up again."""
     members = members_of(world)
@@ -127,8 +151,8 @@ def _longest_step(world: WorldView) -> float:
 
 
 @kernel
-def _measure(world: WorldView) -> tuple[float, float, float]:
-    """Find the slopes; return (most, free, bound).
+def _measure(world: WorldView, speed: float) -> tuple[float, float, float]:
+    """Find the slopes, in units of a speed; return (most, free, bound).
 
     Most is what a touch lacks, or has too much of, at most. The others are the squared lengths of
     the slopes down which one may go: of the touches that have an impulse, and of those without.
@@ -136,7 +160,7 @@ def _measure(world: WorldView) -> tuple[float, float, float]:
     most, free, bound = 0.0, 0.0, 0.0
     for index in range(progress_of(world).touches):
         touch = touches_of(world)[index]
-        slope = -lacking(world, touch)
+        slope = -lacking(world, touch) / speed
         touch.slope = slope
         if touch.change > 0.0:
             free += slope * slope * touch.weight

@@ -163,7 +163,6 @@ def _append(
     touch.normal_x, touch.normal_y = normal_x, normal_y
     inverse_mass_a, inverse_mass_b = inverse_mass_of(world, a), inverse_mass_of(world, b)
     touch.share_a, touch.share_b = shares(inverse_mass_a, inverse_mass_b)
-    touch.weight = 1.0 / (inverse_mass_a + inverse_mass_b)
     touch.restitution, touch.aim = restitution, aim
     touch.change = 0.0
     return True
