@@ -6,8 +6,8 @@ from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch, overlap_between
 from ..pairs.touching import touch_margins
 from ..shapes.records import Edges, Shapes
-from .records import Block, Indices, TraitRecord
-from .view import WorldView, open_world, shown_of, traits_of
+from .records import ON, Block, Indices, TraitRecord
+from .view import WorldView, entries_of, open_world, shown_of, traits_of
 
 
 @kernel
@@ -44,7 +44,7 @@ def find_overlapping(
     count = 0
     for body in range(traits_of(world).shape[0]):
         trait = traits_of(world)[body]
-        if (trait.category & mask) == 0:
+        if entries_of(world)[body].state != ON or (trait.category & mask) == 0:
             continue
         their_x, their_y = _position(world, trait)
         dx, dy = their_x - x, their_y - y
@@ -81,7 +81,7 @@ def find_first(
     first, best, normal_x, normal_y = -1, math.inf, 0.0, 0.0
     for body in range(traits_of(world).shape[0]):
         trait = traits_of(world)[body]
-        if (trait.category & mask) == 0:
+        if entries_of(world)[body].state != ON or (trait.category & mask) == 0:
             continue
         their_x, their_y = _position(world, trait)
         dx, dy = their_x - x, their_y - y

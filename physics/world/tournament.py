@@ -50,6 +50,13 @@ def replay(winners: Indices, plans: Plans, slot: int) -> None:
 
 
 @kernel
+def drop_out(winners: Indices, plans: Plans, slot: int) -> None:
+    """Let a slot, the last one, no longer take part."""
+    winners[winners.shape[0] // 2 + slot] = -1
+    replay(winners, plans, slot)
+
+
+@kernel
 def is_far_ahead(winners: Indices, plans: Plans, slot: int, other: int, time: float) -> bool:
     """Return whether the plans of all but the winner, ``slot``, and another one are later.
 

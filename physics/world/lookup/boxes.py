@@ -12,10 +12,11 @@ import math
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
 from ..clock_time import elapsed
-from ..records import Block, PlanRecord
+from ..records import ON, Block, PlanRecord
 from ..view import (
     WorldView,
     clock_of,
+    entries_of,
     header_of,
     motions_of,
     moving_of,
@@ -176,19 +177,25 @@ def _time_to_pass(offset: float, velocity: float, margin: float) -> float:
 
 
 @kernel
-def enter_static(workspace: Block) -> None:
-    """Put all static bodies that have bounds into their tree."""
+def enter_static(world: WorldView, body: int) -> None:
+    """Put a static body that has bounds into the tree."""
+    trait, node = traits_of(world)[body], static_nodes_of(world)[body]
+    shape = shapes_of(world)[trait.collider]
+    room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
+    node.lower_x = (trait.home_x + shape.lower_x) - room
+    node.lower_y = (trait.home_y + shape.lower_y) - room
+    node.upper_x = (trait.home_x + shape.upper_x) + room
+    node.upper_y = (trait.home_y + shape.upper_y) + room
+    insert_leaf(static_tree_of(world), static_nodes_of(world), body)
+
+
+@kernel
+def enter_all_static(workspace: Block) -> None:
+    """Put all static bodies that have bounds into their tree, in order."""
     world = open_world(workspace, workspace, workspace)
-    nodes, traits, shapes = static_nodes_of(world), traits_of(world), shapes_of(world)
-    clear_tree(static_tree_of(world), nodes)
+    traits, entries = traits_of(world), entries_of(world)
+    clear_tree(static_tree_of(world), static_nodes_of(world))
     for body in range(traits.shape[0]):
         trait = traits[body]
-        if trait.slot != NO_ONE or trait.boundless:
-            continue
-        shape, node = shapes[trait.collider], nodes[body]
-        room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
-        node.lower_x = (trait.home_x + shape.lower_x) - room
-        node.lower_y = (trait.home_y + shape.lower_y) - room
-        node.upper_x = (trait.home_x + shape.upper_x) + room
-        node.upper_y = (trait.home_y + shape.upper_y) + room
-        insert_leaf(static_tree_of(world), nodes, body)
+        if entries[body].state == ON and trait.slot == NO_ONE and not trait.boundless:
+            enter_static(world, body)
