@@ -34,8 +34,9 @@ if TYPE_CHECKING:
         Rectangle,
     )
     from .world.batch import WorldBatch
+    from .world.lookup.answers import RayHit, RayHits
     from .world.records import BEGIN, END, HIT, Hit
-    from .world.world import RayHit, World
+    from .world.world import World
 
 __all__ = [
     "BEGIN",
@@ -58,6 +59,7 @@ __all__ = [
     "NoBodyError",
     "Particle",
     "RayHit",
+    "RayHits",
     "Rectangle",
     "World",
     "WorldBatch",
@@ -79,7 +81,8 @@ _NAMES = {
     "Particle Rectangle",
     "world.batch": "WorldBatch",
     "world.records": "BEGIN END HIT Hit",
-    "world.world": "RayHit World",
+    "world.lookup.answers": "RayHit RayHits",
+    "world.world": "World",
 }
 _MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}
 

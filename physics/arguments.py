@@ -6,6 +6,9 @@ from numbers import Real
 from operator import index
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from .tolerances import FARTHEST
 
 Vector = tuple[float, float]
@@ -89,6 +92,16 @@ def near(name: str, value: Any) -> Vector:
     if max(abs(x), abs(y)) > FARTHEST:
         raise ValueError(f"{name} must be at most {FARTHEST:g} away from 0, but is {value!r}")
     return x, y
+
+
+def near_all(name: str, values: Any) -> npt.NDArray[np.float64]:
+    """Return points, of whose numbers the engine may take the squares, as float64 [n, 2]."""
+    points = np.asarray(values, np.float64)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"{name} must have the shape [n, 2], but has {list(points.shape)}")
+    if not (np.abs(points) <= FARTHEST).all():
+        raise ValueError(f"{name} must be finite, and at most {FARTHEST:g} away from 0")
+    return points
 
 
 def duration(name: str, value: Any) -> float:

@@ -214,8 +214,14 @@ Box = record_dtype(
     ]
 )
 
-# The first and the last level of the grid that has bodies.
-Grid = record_dtype([("lowest", np.int64), ("highest", np.int64)])
+# The grid: the first and the last level that has bodies.
+Grid = record_dtype(
+    [
+        ("lowest", np.int64),
+        ("highest", np.int64),
+        ("ready", np.int64),  # 1: every body has a box
+    ]
+)
 
 # A node of a tree of boxes, see `lookup.tree`: 64 bytes, as a processor reads them.
 Node = record_dtype(
@@ -244,6 +250,21 @@ Pair = record_dtype(
         ("next_guest", np.int64),  # in the sensor's list
         ("previous_guest", np.int64),
         ("moved", np.int64),  # 1: one of the two was placed elsewhere, and has no plan
+    ]
+)
+
+# A ray, or the way of a shape, and what it meets first.
+Ray = record_dtype(
+    [
+        ("x", np.float64),  # its start
+        ("y", np.float64),
+        ("way_x", np.float64),  # to its end
+        ("way_y", np.float64),
+        ("room", np.float64),  # how far beside it bodies are met
+        ("body", np.int64),  # -1: none
+        ("fraction", np.float64),  # of the way
+        ("normal_x", np.float64),  # to the body
+        ("normal_y", np.float64),
     ]
 )
 
@@ -336,6 +357,7 @@ HeaderRecord: TypeAlias = Any  # one `Header`
 BoxRecord: TypeAlias = Any  # one `Box`
 Boxes: TypeAlias = Any  # `Box` [n]
 GridRecord: TypeAlias = Any  # one `Grid`
+RayRecord: TypeAlias = Any  # one `Ray`
 Nodes: TypeAlias = Any  # `Node` [n]
 TreeRecord: TypeAlias = Any  # one `Tree`
 InsideRecord: TypeAlias = Any  # one `Inside`

@@ -42,6 +42,7 @@ ByteArray = npt.NDArray[np.uint8]
 # larger group, the rest is resolved after the first part.
 LARGEST_GROUP = 512
 TOUCHES = 4
+MOST_TABLES = 16  # of shapes that queries ask about, kept for the next query
 # What a larger workspace takes over of a smaller one's header.
 _KEPT = (
     *("bodies", "living", "free", "movers", "sensors", "max_hits", "continuous", "inelastic"),
@@ -80,6 +81,7 @@ class Setup:
         self.colliders: list[Collider] = []
         self._numbers: dict[Collider, int] = {}
         self._boundless: list[bool] = []
+        self._tables: dict[Collider, tuple[ByteArray, ByteArray]] = {}
         self._use(room, _new_workspace(room))
         header = self.header
         header.max_hits, header.continuous = max_hits, continuous
@@ -122,6 +124,7 @@ class Setup:
         twin.colliders = self.colliders.copy()
         twin._numbers = self._numbers.copy()
         twin._boundless = self._boundless.copy()
+        twin._tables = {}
         twin._use(self.room, self.workspace.copy())
         if room:
             twin.resize(**room)
@@ -182,6 +185,7 @@ class Setup:
         self.table("shapes", Shape, shapes + 1)[shapes:] = shape
         self.table("edges", Edge, used + count)[used:] = edges[:count]
         header.shapes, header.edges = shapes + 1, used + count
+        self._tables.clear()
         self._boundless.append(not have_bounds(shape)[0])
         self._numbers[collider] = shapes
         self.colliders.append(collider)
@@ -190,6 +194,20 @@ class Setup:
         """Return a collider's place in the table of shapes, and whether it has no bounds."""
         number = self._numbers[collider]
         return number, self._boundless[number]
+
+    def tables_with(self, collider: Collider) -> tuple[ByteArray, ByteArray]:
+        """Return (shapes, edges) with one more shape at the end, as bytes, for queries."""
+        if collider not in self._tables:
+            if len(self._tables) == MOST_TABLES:
+                self._tables.clear()
+            shape, own_edges = shape_table([collider])
+            shape["first"] += len(self.edges)
+            shapes, edges = (self.shapes, shape), (self.edges, own_edges)
+            self._tables[collider] = (
+                np.concatenate([part.view(np.uint8) for part in shapes]),
+                np.concatenate([part.view(np.uint8) for part in edges]),
+            )
+        return self._tables[collider]
 
     def overrides(self) -> npt.NDArray[Any]:
         """Return the pairs of living bodies that have their own restitution, `Override` [n]."""
@@ -363,15 +381,6 @@ def _plan_state(header: npt.NDArray[Any], movers: int) -> None:
     for name, size in sizes.items():
         end += int(size)
         header[name] = end
-
-
-def with_query(setup: Setup, collider: Collider) -> tuple[Any, Any]:
-    """Return (shapes, edges) of a setup with one more shape at the end."""
-    shape, own_edges = shape_table([collider])
-    shape["first"] += len(setup.edges)
-    shapes: npt.NDArray[Any] = np.concatenate([setup.shapes, shape]).view(Shape)
-    edges: npt.NDArray[Any] = np.concatenate([setup.edges, own_edges]).view(Edge)
-    return shapes, edges
 
 
 def _at_least_one(edges: npt.NDArray[Any]) -> npt.NDArray[Any]:

@@ -83,8 +83,9 @@ class Stepper:
         return hits
 
     def _make_room(self, number: int) -> None:
-        """Make room for more hits, and for more that is inside the sensors of a world."""
-        self._sites[number].make_room_inside()
+        """Make room for more that is inside the sensors of a world, or for more hits."""
+        if self._sites[number].make_room_inside():
+            return
         hits = np.zeros(2 * len(self._hits), Hit)
         hits[: len(self._hits)] = self._hits
         self.halt()

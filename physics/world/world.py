@@ -4,49 +4,26 @@ import math
 import warnings
 from collections.abc import Iterable
 from types import EllipsisType
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, near, not_negative, vector, whole
-from ..body import Body, FloatArray
-from ..drawing import draw_scene
-from ..errors import HitLimitWarning, NoBodyError
+from ..arguments import inverse_mass, not_negative, vector, whole
+from ..errors import HitLimitWarning
 from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
-from ..shapes.colliders import AxisAlignedRectangle, Collider, Particle
-from .living.edits import INDEX_MASK
+from ..shapes.colliders import Collider
 from .living.site import Family, Site, copied
 from .living.snapshots import pack, unpack
-from .queries import find_first, find_overlapping
-from .records import ON, UNUSED
-from .setup import Room, Setup, with_query
+from .questions import ALL, Questions, bits
+from .records import ON
+from .setup import Room, Setup
 from .states import Stepper, checked_step
 
-IndexArray = npt.NDArray[np.int64]
-
-ALL = -1  # a mask of every category
 FIRST_ROOM = Room(bodies=8, movers=8, shapes=4, edges=16)  # of a world
 
 
-class RayHit(NamedTuple):
-    """What a ray meets first.
-
-    Attributes:
-        body: its handle.
-        fraction: of the ray, from 0 at its start (also if it starts inside the body) to 1.
-        point: where the ray, or the centre of the disc that is cast, is then.
-        normal: unit vector out of the body.
-    """
-
-    body: int
-    fraction: float
-    point: FloatArray
-    normal: FloatArray
-
-
-class World:
+class World(Questions):
     """Bodies that move and collide.
 
     A body with a mass is *dynamic*. A body without mass is *static*, or *kinematic* if it has a
@@ -107,7 +84,7 @@ class World:
 
         Args:
             body: its ``velocity``, ``mass`` and ``restitution`` are used, too, if it has them.
-            category: one or several of 64 bits.
+            category: one or several of 64 bits; with 0 it meets nothing, and no query finds it.
             mask: the categories that it meets. Two bodies meet if each one's mask has a bit of the
                 other one's category.
             sensor: it is not solid: there are events when another body enters or leaves it.
@@ -126,8 +103,8 @@ class World:
             math.inf if mass is None else float(mass),
             inverse,
             not_negative("restitution", getattr(body, "restitution", 1.0)),
-            _bits("category", category),
-            _bits("mask", mask),
+            bits("category", category),
+            bits("mask", mask),
             bool(sensor),
         )
 
@@ -139,11 +116,6 @@ class World:
         step begins with an `END`, which names the handles that there were.
         """
         self.site.remove(self._index(handle))
-
-    @alone
-    def body(self, handle: int) -> Body:
-        """Return a body as it is now; changing it does not change the world."""
-        return self.site.body(self._index(handle))
 
     @alone
     def place(self, handle: int, position: Any | None = None, velocity: Any | None = None) -> None:
@@ -191,15 +163,15 @@ class World:
             new_mass = math.inf if mass is None else float(mass)
         elasticity = None if restitution is None else not_negative("restitution", restitution)
         is_on = bool(entry["state"] == ON) if active is None else bool(active)
-        bits = (
-            int(trait["category"]) if category is None else _bits("category", category),
-            int(trait["mask"]) if mask is None else _bits("mask", mask),
+        masks = (
+            int(trait["category"]) if category is None else bits("category", category),
+            int(trait["mask"]) if mask is None else bits("mask", mask),
             bool(trait["sensor"] >= 0) if sensor is None else bool(sensor),
         )
         if elasticity is not None:
             site.set_restitution(index, elasticity)
         if any(value is not None for value in (category, mask, sensor, active)) or mass is not ...:
-            site.change(index, is_on, new_mass, inverse, *bits)
+            site.change(index, is_on, new_mass, inverse, *masks)
 
     @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:
@@ -209,49 +181,6 @@ class World:
             raise ValueError(f"a pair is of two bodies, but both are {a}")
         value = math.nan if restitution is None else not_negative("restitution", restitution)
         self.site.override(*sorted((int(a), int(b))), value)
-
-    def __len__(self) -> int:
-        return int(self.site.setup.header.living)
-
-    def __contains__(self, handle: object) -> bool:
-        """Return whether a handle names a body that was not removed."""
-        try:
-            self._index(handle)
-        except KeyError:
-            return False
-        return True
-
-    @property
-    @alone
-    def handles(self) -> IndexArray:
-        """The handles of all bodies, int64 [n], in the order of their indices; a copy."""
-        handles: IndexArray = self.site.setup.entries["handle"][self.site.living]
-        return handles
-
-    @property
-    @alone
-    def positions(self) -> FloatArray:
-        """The positions of all bodies: float64 [n, 2], a read-only copy (see `place`).
-
-        Row i is of the body ``handles[i]``. `body` returns a single one.
-        """
-        return _read_only(self.site.places(0))
-
-    @property
-    @alone
-    def velocities(self) -> FloatArray:
-        """The velocities of all bodies, as `positions`; of inactive ones, what they keep."""
-        return _read_only(self.site.places(2))
-
-    @property
-    def time(self) -> float:
-        """How long the world has been stepped."""
-        return float(self.site.clock.time)
-
-    @property
-    def capped(self) -> int:
-        """How often a body has used up its hits of a step, or had no room."""
-        return int(self.site.clock.capped)
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
         """Step the world ``steps`` times by ``dt``; return what happened.
@@ -292,51 +221,6 @@ class World:
         return hits
 
     @alone
-    def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
-        """Return the handles of the bodies that contain a point."""
-        return self._overlapping(Particle(0.0), near("point", point), mask)
-
-    @alone
-    def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
-        """Return the handles of the bodies that overlap a box, from its lower left corner up."""
-        low, high = near("lower", lower), near("upper", upper)
-        if not (low[0] < high[0] and low[1] < high[1]):
-            raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
-        middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
-        return self._overlapping(
-            AxisAlignedRectangle(high[0] - low[0], high[1] - low[1]), middle, mask
-        )
-
-    @alone
-    def query_ray(
-        self, start: Any, end: Any, radius: float = 0.0, mask: int = ALL
-    ) -> RayHit | None:
-        """Return what a ray from start to end, or a disc cast along it, meets first; or None.
-
-        A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
-        a side does not. At a corner the normal points against the ray, but is turned no further
-        than the normals of the corner's sides.
-        """
-        x, y = near("start", start)
-        way = np.subtract(near("end", end), (x, y))
-        site = self._checked()
-        index, fraction, normal_x, normal_y = find_first(
-            site.state,
-            site.setup.workspace,
-            *with_query(site.setup, Particle(radius)),
-            x,
-            y,
-            float(way[0]),
-            float(way[1]),
-            _bits("mask", mask),
-        )
-        if index < 0:
-            return None
-        handle = int(site.setup.entries[index]["handle"])
-        point = np.add((x, y), fraction * way)
-        return RayHit(handle, float(fraction), point, np.array((-normal_x, -normal_y)))
-
-    @alone
     def snapshot(self) -> bytes:
         """Return all that steps and edits change, as bytes for `restore`."""
         return pack([self._checked()])
@@ -360,34 +244,6 @@ class World:
         """Return copies of this world, in so many parts, each of which one thread steps."""
         return copied(self._checked(), count, parts)
 
-    def __repr__(self) -> str:
-        living = self.site.living
-        dynamic = int((self.site.setup.entries["mass"][living] < math.inf).sum())
-        sensors = int((self.site.setup.traits["sensor"][living] >= 0).sum())
-        kinds = f"{dynamic} dynamic, {sensors} sensors"
-        return f"<World of {len(self)} bodies ({kinds}) at time {self.time:g}>"
-
-    def draw(self, hits: Iterable[Any] = (), paths: Any = (), width: int = 480) -> str:
-        """Return a picture of the bodies as SVG; static ones are grey, sensors are dashed.
-
-        Args:
-            hits: `Hit` records; each one's point and normal are drawn.
-            paths: positions of all bodies at several times, [times, n, 2], for example a list of
-                `positions`; the ways between them are drawn.
-            width: of the picture, in pixels.
-        """
-        setup, living = self.site.setup, self.site.living
-        looks = [
-            "sensor" if trait["sensor"] >= 0 else "static" if mass == math.inf else "dynamic"
-            for trait, mass in zip(setup.traits[living], setup.entries["mass"][living], strict=True)
-        ]
-        colliders = [setup.colliders[number] for number in setup.traits["collider"][living]]
-        return draw_scene(colliders, self.positions, looks, hits, paths, width)
-
-    def _repr_svg_(self) -> str:
-        """Return the picture that notebooks show."""
-        return self.draw()
-
     def __getstate__(self) -> dict[str, Any]:
         """Support pickling and copying: the shapes, and a snapshot."""
         setup = self.site.setup
@@ -403,51 +259,3 @@ class World:
         for collider in state["colliders"]:
             self.site.setup.add_collider(collider)
         self.restore(state["snapshot"])
-
-    def _checked(self) -> Site:
-        """Return this world's blocks, if all bodies that have to bounce can be separated."""
-        self.site.check()
-        return self.site
-
-    def _overlapping(self, shape: Collider, position: tuple[float, float], mask: int) -> IndexArray:
-        site = self._checked()
-        found = np.zeros(int(site.setup.header.bodies), np.int64)
-        count = find_overlapping(
-            site.state,
-            site.setup.workspace,
-            *with_query(site.setup, shape),
-            finite("x", position[0]),
-            finite("y", position[1]),
-            _bits("mask", mask),
-            found,
-        )
-        handles: IndexArray = site.setup.entries["handle"][found[:count]]
-        return handles
-
-    def _index(self, handle: Any) -> int:
-        """Check the handle of a body, and return its index."""
-        number = integer("the handle of a body", handle)
-        index, setup = number & INDEX_MASK, self.site.setup
-        if number >= 0 and index < setup.header.bodies:
-            entry = setup.entries[index]
-            if entry["handle"] == number and entry["state"] != UNUSED:
-                return index
-            if entry["handle"] > number:
-                raise NoBodyError(
-                    f"body {number} was removed. Forget the handles of bodies that you remove, or "
-                    "ask `handle in world` first"
-                )
-        raise NoBodyError(f"there is no body {number}, and there never was: see `world.handles`")
-
-
-def _read_only(array: FloatArray) -> FloatArray:
-    array.flags.writeable = False
-    return array
-
-
-def _bits(name: str, value: Any) -> int:
-    """Return an integer of 64 bits."""
-    bits = integer(name, value)
-    if not -(1 << 63) <= bits < 1 << 63:
-        raise ValueError(f"{name} must fit into 64 bits, but is {value!r}")
-    return bits

@@ -18,6 +18,7 @@ from ..view import (
     boundless_of,
     clock_of,
     found_of,
+    grid_of,
     header_of,
     moving_of,
     plans_of,
@@ -39,6 +40,8 @@ def make_ready(world: WorldView) -> None:
     if header_of(world).continuous and clock_of(world).planned == UNPLANNED:
         plan_all(world)
         clock_of(world).planned = PLANNED
+    if not is_planned(world):
+        grid_of(world).ready = 0  # Nobody keeps it up to date.
 
 
 @kernel

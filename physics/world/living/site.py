@@ -11,7 +11,7 @@ from ...errors import InseparableError
 from ...shapes.colliders import Collider
 from ..lookup.inside import FEW_PAIRS, inside_block, pairs_inside
 from ..lookup.tree import NO_ONE
-from ..records import NEW, OFF, PLANNED, UNPLANNED, UNUSED, Clock, Hit, Inside, Motion, Plan
+from ..records import NEW, OFF, PLANNED, UNPLANNED, UNUSED, Clock, Grid, Hit, Inside, Motion, Plan
 from ..setup import ByteArray, Setup, inseparable_pair
 from .edits import (
     INDEX_MASK,
@@ -257,15 +257,20 @@ class Site:
             self.setup.header.sensors = 1
             self.inside = inside_block(np.zeros((0, 3), np.int64), self.heads(), FEW_PAIRS)
 
-    def make_room_inside(self) -> None:
-        """Make room for more pairs of a sensor and a body inside."""
-        if self.setup.header.sensors:
+    def make_room_inside(self) -> bool:
+        """Make room for more pairs of a sensor and a body inside; return whether there was none."""
+        inside = self.inside[: Inside.itemsize].view(Inside)[0]
+        is_full = bool(self.setup.header.sensors and inside["free"] == NO_ONE)
+        if is_full:
             pairs = pairs_inside(self.inside)
             self.halt()
             self.inside = inside_block(pairs, self.heads(), FEW_PAIRS + len(pairs))
+        return is_full
 
     def unplan(self) -> None:
         """Let all plans and boxes be made again; a new world has none."""
+        start = int(self.setup.header.grid_at)
+        self.state[start : start + Grid.itemsize].view(Grid)["ready"] = 0
         if self.clock.planned == PLANNED:
             self.clock.planned = UNPLANNED
 

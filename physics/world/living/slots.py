@@ -19,6 +19,7 @@ from ..view import (
     boxes_of,
     clock_of,
     entries_of,
+    grid_of,
     header_of,
     links_of,
     motions_of,
@@ -64,6 +65,7 @@ def give_slot(world: WorldView, body: int, x: float, y: float, vx: float, vy: fl
     plan.tied = plan.hits = plan.rests = plan.instant = plan.nowhere = 0
     plan.suitor = NO_ONE
     plan.is_linked, plan.near = 0, TOO_MANY
+    plan.margin = -1.0  # it is in no box
     plan.fresh = clock.fresh = 1
     if is_planned(world):
         winners = winners_of(world)
@@ -71,6 +73,7 @@ def give_slot(world: WorldView, body: int, x: float, y: float, vx: float, vy: fl
         replay(winners, plans_of(world), slot)
     if not header.has_grid and header.movers > FEW_MOVING:
         header.has_grid = 1
+        grid_of(world).ready = 0
         if clock.planned == PLANNED:
             clock.planned = UNPLANNED
 

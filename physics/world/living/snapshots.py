@@ -114,10 +114,15 @@ def _pack_bodies(setup: Setup) -> bytes:
     header, overrides = setup.header, setup.overrides()
     bodies = int(header.bodies)
     head = np.zeros(1, Head)
-    for name in Head.names:
+    for name in (*_ASKED, *_OF_HEADERS):
         head[name] = header[name]
     head["overrides"] = len(overrides)
-    digest = _digest(setup, int(header.shapes), int(header.edges))
+    # The shapes up to the last one in use: later ones may come of edits that were undone.
+    shapes = int(setup.traits["collider"][:bodies].max(initial=-1)) + 1
+    last = setup.shapes[:shapes][-1:]
+    edges = int((last["first"] + last["count"]).sum())
+    head["shapes"], head["edges"] = shapes, edges
+    digest = _digest(setup, shapes, edges)
     tables = (setup.traits[:bodies], setup.entries[:bodies], overrides)
     return b"".join([head.tobytes(), digest, *(table.tobytes() for table in tables)])
 
@@ -266,6 +271,7 @@ def _write(
         site.clock[name] = clock[name]
     for name in MOTIONS:
         site.setup.records(site.state, name, Motion)[:] = kept[name]
+    site.unplan()
     plans = site.setup.records(site.state, "plans", Plan)
     for name in ("hits", "rests", "instant", "nowhere", "stage"):
         plans[name] = 0

@@ -12,17 +12,19 @@ import math
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
 from ..clock_time import elapsed
-from ..records import ON, Block, PlanRecord
+from ..records import ON, PLANNED, Block, PlanRecord
 from ..view import (
     WorldView,
     clock_of,
     entries_of,
+    grid_of,
     header_of,
     motions_of,
     moving_of,
     open_world,
     plans_of,
     shapes_of,
+    shown_of,
     static_nodes_of,
     static_tree_of,
     traits_of,
@@ -146,6 +148,35 @@ def fit_all(world: WorldView, now: float, now_low: float) -> None:
         plans[slot].near = TOO_MANY
     for slot in range(plans.shape[0]):
         fit_here(world, slot, now, now_low, first_margin(world, slot))
+    grid_of(world).ready = 1
+
+
+@kernel
+def is_astray(world: WorldView, slot: int) -> bool:
+    """Return whether a user has put a body out of its box since the last step."""
+    plan, seen = plans_of(world)[slot], shown_of(world)[slot]
+    return not (
+        abs(seen.x - plan.middle_x) <= plan.margin and abs(seen.y - plan.middle_y) <= plan.margin
+    )
+
+
+@kernel
+def fit_shown(world: WorldView) -> None:
+    """Prepare all boxes for queries: only bodies that users have moved since may be astray.
+
+    If the next step makes all boxes anyway, none is. Else a plan may depend on where a box is.
+    """
+    clock = clock_of(world)
+    if not header_of(world).has_grid:
+        return
+    if grid_of(world).ready == 0:
+        fit_all(world, clock.time, clock.time_low)
+    if clock.planned == PLANNED:
+        return
+    shown = shown_of(world)
+    for slot in range(shown.shape[0]):
+        if is_astray(world, slot):
+            fit(world, slot, shown[slot].x, shown[slot].y, first_margin(world, slot))
 
 
 @kernel

@@ -27,11 +27,12 @@ MIDDLE_LEVEL = 24  # with the cells that suit typical bodies
 # A cell is larger than a box by this fraction, because of rounding. No number of a cell is larger
 # than 1e9, see `boxes.FAR`.
 SPARE = 1e-6
+FARTHEST = 1e12
 _BITS = (1 << 26) - 1
 
 
 @kernel
-def _cell_size(world: WorldView, level: int) -> float:
+def cell_size(world: WorldView, level: int) -> float:
     """Return the size of a level's cells; the last level has a single one."""
     if level == LEVELS - 1:
         return math.inf
@@ -44,13 +45,16 @@ def _cell_size(world: WorldView, level: int) -> float:
 
 
 @kernel
-def _number(position: float, size: float) -> int:
+def number_of(position: float, size: float) -> int:
     """Return the column or row of a position."""
-    return math.floor(position / size) if size < math.inf else 0
+    if size == math.inf:
+        return 0
+    # No body is so far away, but a query may be.
+    return math.floor(max(-FARTHEST, min(FARTHEST, position / size)))
 
 
 @kernel
-def _bucket(level: int, column: int, row: int, buckets: int) -> int:
+def bucket_of(level: int, column: int, row: int, buckets: int) -> int:
     """Return the place of a cell in the table, whose length is a power of two."""
     # Only some bits of the numbers: so nothing overflows.
     mixed = level * 83492791 + (column & _BITS) * 73856093 + (row & _BITS) * 19349663
@@ -83,9 +87,9 @@ def enter_grid(world: WorldView, slot: int) -> None:
         level += 1
         size = size * 2.0 if level < LEVELS - 1 else math.inf
     box.level = level
-    box.column = _number(0.5 * box.lower_x + 0.5 * box.upper_x, size)
-    box.row = _number(0.5 * box.lower_y + 0.5 * box.upper_y, size)
-    bucket = _bucket(level, box.column, box.row, heads.shape[0])
+    box.column = number_of(0.5 * box.lower_x + 0.5 * box.upper_x, size)
+    box.row = number_of(0.5 * box.lower_y + 0.5 * box.upper_y, size)
+    bucket = bucket_of(level, box.column, box.row, heads.shape[0])
     first = heads[bucket]
     box.next = first
     plan.previous = NO_ONE
@@ -107,7 +111,7 @@ def leave_grid(world: WorldView, slot: int) -> None:
     if previous != NO_ONE:
         boxes[previous].next = box.next
     else:
-        heads[_bucket(box.level, box.column, box.row, heads.shape[0])] = box.next
+        heads[bucket_of(box.level, box.column, box.row, heads.shape[0])] = box.next
     grid, counts = grid_of(world), level_counts_of(world)
     counts[box.level] -= 1
     while grid.highest >= 0 and counts[grid.highest] == 0:
@@ -147,7 +151,7 @@ def _find_on_level(
 ) -> int:
     """Do the same for the bodies on one level."""
     plans, boxes, heads = plans_of(world), boxes_of(world), heads_of(world)
-    size = _cell_size(world, level)
+    size = cell_size(world, level)
     # The middle of a box that touches this one is at most half a cell away from it.
     columns = (upper_x - lower_x) / size + 2.0
     rows = (upper_y - lower_y) / size + 2.0
@@ -158,13 +162,13 @@ def _find_on_level(
                 found[count] = slot
                 count += touch(boxes[slot], lower_x, lower_y, upper_x, upper_y)
         return count
-    left = _number(lower_x - 0.5 * size, size)
-    right = _number(upper_x + 0.5 * size, size)
-    low = _number(lower_y - 0.5 * size, size)
-    high = _number(upper_y + 0.5 * size, size)
+    left = number_of(lower_x - 0.5 * size, size)
+    right = number_of(upper_x + 0.5 * size, size)
+    low = number_of(lower_y - 0.5 * size, size)
+    high = number_of(upper_y + 0.5 * size, size)
     for column in range(left, right + 1):
         for row in range(low, high + 1):
-            slot = heads[_bucket(level, column, row, heads.shape[0])]
+            slot = heads[bucket_of(level, column, row, heads.shape[0])]
             while slot != NO_ONE:
                 box = boxes[slot]
                 # Several cells may share a bucket.

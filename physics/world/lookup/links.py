@@ -55,6 +55,7 @@ def leave_lists(world: WorldView, slot: int) -> None:
         leave_grid(world, slot)
         plan.is_linked = 0
     plan.near = TOO_MANY
+    plan.margin = -1.0  # it is in no box
 
 
 @kernel

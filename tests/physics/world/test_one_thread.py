@@ -77,6 +77,7 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
         lambda: world.query_point((0.0, 0.0)),
         lambda: world.query_box((0.0, 0.0), (1.0, 1.0)),
         lambda: world.query_ray((0.0, 0.0), (1.0, 1.0)),
+        lambda: world.query_rays([(0.0, 0.0)], [(1.0, 1.0)]),
         lambda: world.positions,
         lambda: world.velocities,
         lambda: WorldBatch(world, 2),

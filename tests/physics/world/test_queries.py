@@ -279,3 +279,85 @@ def test_nothing_is_found_where_there_is_nothing() -> None:
 def test_an_invalid_query_is_refused(call: Any, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
         call(WORLD)
+
+
+def crowd(seed: int, bodies: int) -> tuple[World, list[Body]]:
+    """Return a world that has been stepped, in which users then moved some bodies, and its bodies.
+
+    Its bodies have all sizes, and are many more than a world may have without a grid.
+    """
+    rng = np.random.default_rng(seed)
+    world = World([Body(HalfPlane((1, 3)), (0, -40)), Body(AxisAlignedHalfPlane("-x"), (40, 0))])
+    for index in range(bodies):
+        size, place = 10.0 ** rng.uniform(-2, 0.5), rng.uniform(-30, 30, 2)
+        shape = (Particle(size), Rectangle(size, 0.5, 0.3), AxisAlignedRectangle(1, size))[
+            index % 3
+        ]
+        velocity = rng.normal(size=2) if index % 2 else (0, 0)
+        world.add(Body(shape, place, velocity, mass=None if index % 4 < 2 else 1), mask=0)
+    for turn in range(int(rng.integers(3))):
+        world.step(0.5 * turn)
+    for body in rng.choice(bodies, int(rng.integers(4))).tolist():
+        world.place(2 + body, rng.uniform(-30, 30, 2))
+    return world, bodies_of(world)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([0.0, 0.0, 0.3]))
+def test_many_rays_meet_what_they_meet_one_by_one(seed: int, radius: float) -> None:
+    """Each ray was tested against each body. Now it walks through the cells and the tree."""
+    world, bodies = crowd(seed, 60)
+    rng = np.random.default_rng(seed)
+    starts, ends = rng.uniform(-35, 35, (2, 40, 2))
+    ends[::4, seed % 2] = starts[::4, seed % 2]  # straight along an axis
+    ends[1::8] = starts[1::8] + 1e-3
+    ends[2::16] *= 1e9
+    ends[3] = starts[3]
+    hits = world.query_rays(starts, ends, radius)
+    for index, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        disc = Body(Particle(radius), start, end - start)
+        due = [time_of_impact(disc, Body(b.collider, b.position)) for b in bodies]
+        times = [math.inf if d is None or d.time > 1 else d.time for d in due]
+        first = int(np.argmin(times)) if min(times) < math.inf else -1
+        assert hits.bodies[index] == first
+        one = world.query_ray(start, end, radius)
+        if one is None:
+            assert hits.fractions[index] == math.inf
+            assert np.isnan(hits.points[index]).all()
+            assert np.isnan(hits.normals[index]).all()
+        else:
+            assert (one.body, one.fraction) == (first, times[first])
+            assert hits.fractions[index] == one.fraction
+            assert hits.points[index].tolist() == one.point.tolist()
+            assert hits.normals[index].tolist() == one.normal.tolist()
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6))
+def test_places_in_a_crowd_are_searched_as_one_by_one(seed: int) -> None:
+    world, bodies = crowd(seed, 60)
+    rng = np.random.default_rng(seed)
+    for lower in rng.uniform(-35, 30, (20, 2)):
+        upper = lower + 10.0 ** rng.uniform(-2, 2, 2)
+        box = Body(AxisAlignedRectangle(*(upper - lower)), 0.5 * (lower + upper))
+        due = [index for index, body in enumerate(bodies) if detect(box, body)]
+        assert world.query_box(lower, upper).tolist() == due
+        point = Body(Particle(0), lower)
+        due = [index for index, body in enumerate(bodies) if detect(point, body)]
+        assert world.query_point(lower).tolist() == due
+
+
+def test_rays_need_as_many_starts_as_ends() -> None:
+    with pytest.raises(ValueError, match="2 starts, but 1 ends"):
+        WORLD.query_rays([(0, 0), (1, 1)], [(2, 2)])
+    with pytest.raises(ValueError, match=r"shape \[n, 2\]"):
+        WORLD.query_rays((0, 0), (1, 1))
+    with pytest.raises(ValueError, match="finite"):
+        WORLD.query_rays([(0, math.nan)], [(1, 1)])
+
+
+def test_a_body_of_no_category_is_found_by_nothing() -> None:
+    world = World()
+    world.add(Body(Particle(1), (0, 0)), category=0)
+    assert world.query_point((0, 0)).tolist() == []
+    assert world.query_ray((-3, 0), (3, 0)) is None
