@@ -24,9 +24,19 @@ TOUCH = 2.0**-41
 # of a few last digits, 1e-16, of what the speeds were. If they touch, they rest.
 NO_APPROACH = 1e-14
 
+# A fraction of the change of a velocity by the hit of two bodies: seven roundings of 1.1e-16, and
+# some. A velocity that is smaller after the hit is 0.
+NO_TURN = 1e-15
+
 # Rounds of relaxation at the beginning of a step. In a pile where each body pushes the next one,
 # each round reduces the overlaps by a constant factor; where there is no room, this limit ends it.
 RELAX_ROUNDS = 64
+
+# Of so many of these rounds, the last one moves all pairs apart together. Most overlaps need fewer.
+RELAX_PAIRWISE = 16
+
+# It minds gaps up to so many times the deepest overlap: so far a light body may have to move.
+RELAX_REACH = 8.0
 
 # A fraction of a body's speed. Which of two static bodies it meets first is a matter of rounding if
 # it touches both; they are compared if it approaches them at least this fast.

@@ -61,8 +61,9 @@ def write_event(
     hit.time = time
     hit.a = entries[a].handle
     hit.b = entries[b].handle
-    hit.normal[0] = normal_x
-    hit.normal[1] = normal_y
+    # The sum turns -0 into 0: no bit tells which of the two was first.
+    hit.normal[0] = normal_x + 0.0
+    hit.normal[1] = normal_y + 0.0
     hit.point[0] = point_x
     hit.point[1] = point_y
     hit.impulse = impulse
@@ -74,6 +75,8 @@ def contact_point(
     world: WorldView, a: int, b: int, now: float, now_low: float, normal_x: float, normal_y: float
 ) -> tuple[float, float]:
     """Return the point at which two bodies touch along the normal from a to b."""
+    if a > b:
+        a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
     x, y = touching_point(

@@ -3,16 +3,20 @@
 The lecture on collisions in games has three parts: detection, relaxation, bounce.
 """
 
+import math
+
 from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..tolerances import RELAX_ROUNDS
+from ..tolerances import RELAX_PAIRWISE, RELAX_REACH, RELAX_ROUNDS, RESOLVED
 from .courses import margins_of, motion_at, move_to
 from .events import enter_sensor, has_room, write_event
 from .lookup.boxes import first_margin, fit, follow
 from .lookup.neighbours import find_near, sort_items
 from .meetings.pair import bounce_pair
+from .meetings.solver import resolve
+from .meetings.touches import append, are_joined, clear_group
 from .prediction import is_inside
 from .records import HIT, Hits
 from .view import (
@@ -20,6 +24,7 @@ from .view import (
     boxes_of,
     clock_of,
     edges_of,
+    members_of,
     motions_of,
     moving_of,
     near_of,
@@ -27,6 +32,7 @@ from .view import (
     plans_of,
     progress_of,
     shapes_of,
+    touches_of,
     traits_of,
 )
 
@@ -37,21 +43,24 @@ def relax_overlaps(world: WorldView) -> bool:
 
     Moving one pair apart may push it into others: what was moved is fresh, too. So this repeats
     until no fresh body overlaps another one, or, where there is not enough room for all, for a
-    limited number of rounds. The overlaps that remain are noted in the progress as crowded, and the
-    next step continues with them.
+    limited number of rounds. Where it takes long, as for a light body between heavy ones, all pairs
+    are moved apart together now and then. The overlaps that remain are noted in the progress as
+    crowded, and the next step continues with them.
     """
     plans, order, traits = plans_of(world), order_of(world), traits_of(world)
     put_in_order(world)
-    has_moved = False
-    for _ in range(RELAX_ROUNDS):
-        is_done = True
+    has_moved, has_room_for_all = False, True
+    for number in range(RELAX_ROUNDS):
+        deepest = 0.0
         for index in range(order.shape[0]):
             slot = traits[order[index]].slot
-            if plans[slot].fresh and _relax_body(world, slot):
-                is_done = False
-        if is_done:
+            if plans[slot].fresh:
+                deepest = max(deepest, _relax_body(world, slot))
+        if deepest == 0.0:
             return has_moved
         has_moved = True
+        if has_room_for_all and number % RELAX_PAIRWISE == RELAX_PAIRWISE - 1:
+            has_room_for_all = _relax_together(world, deepest)
     progress_of(world).crowded = 1
     return has_moved
 
@@ -66,11 +75,68 @@ def put_in_order(world: WorldView) -> None:
 
 
 @kernel
-def _relax_body(world: WorldView, slot: int) -> bool:
-    """Move a fresh body out of others; return whether there was an overlap."""
+def _relax_together(world: WorldView, deepest: float) -> bool:
+    """Move fresh bodies out of all others by the shortest ways, weighted by mass.
+
+    To first order, it is a group whose touches lack the depths of their overlaps, see `solver`; an
+    overlap below 0 is a gap that may close. What turns on the way is left to the next rounds. If
+    there is no room for all, it returns False and moves nothing.
+
+    Args:
+        world: the world.
+        deepest: of the last overlaps. Only gaps that are not much wider matter.
+    """
+    clear_group(world)
+    plans, near, order = plans_of(world), near_of(world), order_of(world)
+    for place in range(order.shape[0]):
+        body = order[place]
+        slot = traits_of(world)[body].slot
+        if not plans[slot].fresh or traits_of(world)[body].inverse_mass == 0.0:
+            continue
+        for index in range(_find_close(world, slot)):
+            _join_close(world, body, near[index], RELAX_REACH * deepest)
+    progress, members = progress_of(world), members_of(world)
+    if progress.touches < 2:
+        return True
+    if not resolve(world, RESOLVED):
+        return False
+    for index in range(progress.members):
+        member = members[index]
+        if member.inverse_mass > 0.0:
+            _begin_anew(world, member.body)
+            motion = motions_of(world)[traits_of(world)[member.body].slot]
+            motion.x += member.vx
+            motion.y += member.vy
+            _follow(world, member.body)
+    return True
+
+
+@kernel
+def _join_close(world: WorldView, a: int, b: int, reach: float) -> None:
+    """Join two bodies that overlap, or that are apart by no more than the reach."""
+    traits = traits_of(world)
+    if traits[a].sensor >= 0 or traits[b].sensor >= 0 or are_joined(world, a, b):
+        return
+    clock = clock_of(world)
+    found, normal_x, normal_y, depth, _, _ = _contact_within(
+        world, a, b, clock.time, clock.time_low, -reach
+    )
+    if not found or depth == math.inf:
+        return
+    if append(world, a, b, normal_x, normal_y, 0.0, depth):
+        touch = touches_of(world)[progress_of(world).touches - 1]
+        for place in (touch.one, touch.other):
+            if place >= 0:
+                member = members_of(world)[place]
+                member.old_vx = member.old_vy = member.vx = member.vy = 0.0
+
+
+@kernel
+def _relax_body(world: WorldView, slot: int) -> float:
+    """Move a fresh body out of others; return the depth of the deepest overlap."""
     traits, plans, near = traits_of(world), plans_of(world), near_of(world)
     body = moving_of(world)[slot]
-    is_moved = False
+    deepest = 0.0
     for index in range(_find_close(world, slot)):
         other = near[index]
         theirs = traits[other].slot
@@ -83,8 +149,8 @@ def _relax_body(world: WorldView, slot: int) -> bool:
             _move_apart(world, body, other, normal_x, normal_y, depth)
             _follow(world, body)
             _follow(world, other)
-            is_moved = True
-    return is_moved
+            deepest = max(deepest, depth)
+    return deepest
 
 
 @kernel
@@ -151,10 +217,19 @@ def _contact_at(
     world: WorldView, a: int, b: int, now: float, now_low: float
 ) -> tuple[bool, float, float, float, float, float]:
     """Return the contact of two bodies at a time, with the point in the world's coordinates."""
+    return _contact_within(world, a, b, now, now_low, 0.0)
+
+
+@kernel
+def _contact_within(
+    world: WorldView, a: int, b: int, now: float, now_low: float, least: float
+) -> tuple[bool, float, float, float, float, float]:
+    """Return the same of two bodies that overlap by more than a depth; below 0 it is a gap."""
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
     first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
     margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
+    margin_x, margin_y = margin_x + least, margin_y + least
     found, normal_x, normal_y, depth, x, y = contact_between(
         shapes_of(world), edges_of(world), first, second, bx - ax, by - ay, margin_x, margin_y
     )

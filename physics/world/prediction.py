@@ -66,6 +66,9 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     plan.slack = 0.0
     plan.tied = 0
     _find_event(world, slot, now, now_low, only_later)
+    body = moving_of(world)[slot]
+    partner = plan.partner if plan.kind == MEET else body
+    plan.pair = min(body, partner) * traits_of(world).shape[0] + max(body, partner)
     if plan.kind == MEET:
         join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)

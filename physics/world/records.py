@@ -173,6 +173,7 @@ Plan = record_dtype(
         ("hits", np.int64),  # in this step, see `count_hit`; from 0 again at each later stage
         ("kind", np.int64),
         ("partner", np.int64),  # the body to meet
+        ("pair", np.int64),  # the two bodies as one number, whichever of them plans
         ("normal_x", np.float64),  # from this body to its partner
         ("normal_y", np.float64),
         ("slack", np.float64),  # what rounding may add to the time until it meets its partner

@@ -329,7 +329,7 @@ def _new_workspace(room: Room) -> ByteArray:
         header[f"{name}_room"] = getattr(room, name)
     header["overrides"], header["static_nodes"] = room.overrides, 2 * room.bodies
     group = min(room.movers, LARGEST_GROUP)
-    header["members"], header["touches"] = group, TOUCHES * (group + 2)
+    header["members"], header["touches"] = group, TOUCHES * (group + 2) + 1
     _plan_state(header, room.movers)
     index = np.dtype(np.int64)
     parts: dict[str, tuple[Any, int]] = {
@@ -349,7 +349,7 @@ def _new_workspace(room: Room) -> ByteArray:
         "order": (index, room.movers),
         "places": (index, room.movers),
         "members": (Member, group),
-        "touches": (Touch, TOUCHES * (group + 2)),
+        "touches": (Touch, TOUCHES * (group + 2) + 1),
         "stack": (index, STACK),
     }
     at = header.nbytes

@@ -2,7 +2,7 @@
 
 ``winners`` is a binary tree in an array. Its second half are the leaves: the slots in order, or -1.
 Every node holds the winner of its two children, node 1 the winner of all. Of equal times the lower
-slot wins, so that the order never depends on history.
+pair of bodies wins, and then the lower slot, so that the order never depends on history.
 """
 
 from ..kernels import kernel
@@ -17,12 +17,14 @@ def leaf_count(players: int) -> int:
 
 @kernel
 def better(plans: Plans, one: int, other: int) -> int:
-    """Return the slot whose plan comes first; the left one if the times are equal."""
+    """Return the slot whose plan comes first."""
     if other < 0:
         return one
     left = plans[one]
     right = plans[other]
     if is_earlier(right.time, right.time_low, left.time, left.time_low):
+        return other
+    if right.time == left.time and right.time_low == left.time_low and right.pair < left.pair:
         return other
     return one
 

@@ -60,7 +60,7 @@ def give_slot(world: WorldView, body: int, x: float, y: float, vx: float, vy: fl
     plan = plans_of(world)[slot]
     plan.time, plan.time_low = math.inf, 0.0
     plan.at, plan.at_low = clock.time, clock.time_low
-    plan.kind, plan.stage = NOTHING, FREE
+    plan.kind, plan.partner, plan.stage = NOTHING, 0, FREE
     plan.slack, plan.speed = 0.0, abs(vx) + abs(vy)
     plan.tied = plan.hits = plan.rests = plan.instant = plan.nowhere = 0
     plan.suitor = NO_ONE

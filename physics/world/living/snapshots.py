@@ -273,7 +273,7 @@ def _write(
         site.setup.records(site.state, name, Motion)[:] = kept[name]
     site.unplan()
     plans = site.setup.records(site.state, "plans", Plan)
-    for name in ("hits", "rests", "instant", "nowhere", "stage"):
+    for name in plans.dtype.names or ():
         plans[name] = 0
     for name in _OF_PLANS:
         plans[name] = kept[name]

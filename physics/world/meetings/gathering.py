@@ -18,6 +18,7 @@ from ..view import (
     traits_of,
     winners_of,
 )
+from .passing import inverse_mass_of
 from .touches import add_member, are_joined, clear_group, join, velocities_of, would_hit
 
 
@@ -55,7 +56,7 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
     clear_group(world)
     plans, winners, pairs = plans_of(world), winners_of(world), stale_of(world)
     bodies = traits_of(world).shape[0]
-    pairs[0] = _pair_of(world, slot)
+    pairs[0] = plans[slot].pair
     count = 1
     latest, latest_low = later(now, now_low, plans[slot].slack)
     node = next_due(winners, plans, 0, latest, latest_low)
@@ -65,20 +66,13 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
         # The times may differ by what rounding may do to either.
         wait = elapsed(plan.time, plan.time_low, now, now_low)
         if other != slot and wait <= plan.slack and _is_solid_meeting(world, other):
-            pairs[count] = _pair_of(world, other)
+            pairs[count] = plan.pair
             count += 1
         node = next_due(winners, plans, node, latest, latest_low)
     sort_items(pairs, count)
     for index in range(count):
         if index == 0 or pairs[index] != pairs[index - 1]:
             _join_planned(world, pairs[index] // bodies, pairs[index] % bodies, now, now_low)
-
-
-@kernel
-def _pair_of(world: WorldView, slot: int) -> int:
-    """Return the pair of a body and its partner as one number, the same for both."""
-    one, other = moving_of(world)[slot], plans_of(world)[slot].partner
-    return int(min(one, other) * traits_of(world).shape[0] + max(one, other))
 
 
 @kernel
@@ -94,7 +88,7 @@ def _join_planned(world: WorldView, a: int, b: int, now: float, now_low: float) 
         normal_x, normal_y = plans[slot].normal_x, plans[slot].normal_y
     else:
         normal_x, normal_y = -plans[traits[b].slot].normal_x, -plans[traits[b].slot].normal_y
-    if traits[a].inverse_mass == 0.0:
+    if inverse_mass_of(world, a) == 0.0:
         a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
     if not are_joined(world, a, b):
         join(world, a, b, normal_x, normal_y, now, now_low)
@@ -129,27 +123,33 @@ def _join_around(world: WorldView, body: int, now: float, now_low: float) -> Non
     own = traits[body]
     if own.sensor >= 0:
         return
-    x, y, _, _ = motion_at(world, body, now, now_low)
-    old_vx, old_vy, vx, vy = velocities_of(world, body)
     count = find_near(world, own.slot, False)
     sort_items(near, count)
     for index in range(count):
         other = near[index]
         if traits[other].sensor >= 0:
             continue
-        their_x, their_y, _, _ = motion_at(world, other, now, now_low)
-        dx, dy = their_x - x, their_y - y
-        margin_x, margin_y = margins_of(world, body, other, x, y, their_x, their_y)
-        their_old_vx, their_old_vy, their_vx, their_vy = velocities_of(world, other)
-        # First as they came, then as they would go on.
-        ux, uy = their_old_vx - old_vx, their_old_vy - old_vy
-        touches, normal_x, normal_y = would_hit(
-            world, body, other, dx, dy, ux, uy, margin_x, margin_y
-        )
-        if not touches and (ux != their_vx - vx or uy != their_vy - vy):
-            ux, uy = their_vx - vx, their_vy - vy
-            touches, normal_x, normal_y = would_hit(
-                world, body, other, dx, dy, ux, uy, margin_x, margin_y
-            )
-        if touches and not are_joined(world, body, other):
-            join(world, body, other, normal_x, normal_y, now, now_low)
+        a, b = body, other
+        if b < a and inverse_mass_of(world, b) > 0.0:
+            a, b = b, a
+        if not are_joined(world, a, b):
+            _join_touching(world, a, b, now, now_low)
+
+
+@kernel
+def _join_touching(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
+    """Join a body of finite mass with another one, if they touch and have to bounce."""
+    x, y, _, _ = motion_at(world, a, now, now_low)
+    their_x, their_y, _, _ = motion_at(world, b, now, now_low)
+    dx, dy = their_x - x, their_y - y
+    margin_x, margin_y = margins_of(world, a, b, x, y, their_x, their_y)
+    old_vx, old_vy, vx, vy = velocities_of(world, a)
+    their_old_vx, their_old_vy, their_vx, their_vy = velocities_of(world, b)
+    # First as they came, then as they would go on.
+    ux, uy = their_old_vx - old_vx, their_old_vy - old_vy
+    touches, normal_x, normal_y = would_hit(world, a, b, dx, dy, ux, uy, margin_x, margin_y)
+    if not touches and (ux != their_vx - vx or uy != their_vy - vy):
+        ux, uy = their_vx - vx, their_vy - vy
+        touches, normal_x, normal_y = would_hit(world, a, b, dx, dy, ux, uy, margin_x, margin_y)
+    if touches:
+        join(world, a, b, normal_x, normal_y, now, now_low)

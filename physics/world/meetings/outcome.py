@@ -1,7 +1,7 @@
 """A group that is resolved together: the hits that it has, and what its bodies do next."""
 
 from ...kernels import kernel
-from ...tolerances import RESOLVED, ROUGHLY
+from ...tolerances import NO_APPROACH, NO_TURN, RESOLVED, ROUGHLY
 from ..courses import is_short_way, move_to
 from ..events import contact_point, leave_sensors, write_event
 from ..prediction import find_stale, predict
@@ -17,6 +17,7 @@ from ..view import (
 )
 from .changes import count_hit, count_rest, predict_stale, reach_stage, shrink_box
 from .gathering import gather_due, join_neighbours
+from .order import sort_group
 from .pair import turn_velocity
 from .passing import slowest_hit
 from .solver import group_speed, inverse_masses, lacking, resolve
@@ -41,6 +42,7 @@ def meet_together(
     """
     gather_due(world, slot, now, now_low)
     join_neighbours(world, now, now_low)
+    sort_group(world)
     has_room_for_all = True
     tolerance = ROUGHLY  # until it is known who is in the group
     for _ in range(2 * touches_of(world).shape[0]):  # two rounds at least add a touch, or end it
@@ -70,6 +72,8 @@ def _move_on(
     """Give all members their velocities, and write the hits; return how many there are."""
     progress, members, touches = progress_of(world), members_of(world), touches_of(world)
     speed = group_speed(world)
+    # Velocities are as exact as the group is resolved.
+    exactness = NO_TURN if progress.touches == 1 else NO_APPROACH
     _add_up(world)
     for index in range(progress.members):
         member = members[index]
@@ -78,7 +82,8 @@ def _move_on(
         if member.met > 0 and member.inverse_mass > 0.0:
             count = leave_sensors(world, hits, count, world_index, member.body, now, now_low)
             move_to(world, member.body, now, now_low)
-            turn_velocity(world, slot, member.vx, member.vy, member.turn_x, member.turn_y)
+            rest_x, rest_y = exactness * member.turn_x, exactness * member.turn_y
+            turn_velocity(world, slot, member.vx, member.vy, rest_x, rest_y)
         plan.speed = max(plan.speed, speed)
     for index in range(progress.touches):
         touch = touches[index]

@@ -4,7 +4,7 @@ import math
 
 from ...kernels import kernel
 from ...pairs.response import bounce_velocities
-from ...tolerances import MOST_AT_ONCE, NO_APPROACH
+from ...tolerances import MOST_AT_ONCE, NO_TURN
 from ..lookup.overrides import find_override
 from ..records import INERT
 from ..view import (
@@ -29,19 +29,19 @@ def velocity_of(world: WorldView, slot: int) -> tuple[float, float]:
 
 @kernel
 def turn_velocity(
-    world: WorldView, slot: int, vx: float, vy: float, turn_x: float, turn_y: float
+    world: WorldView, slot: int, vx: float, vy: float, rest_x: float, rest_y: float
 ) -> None:
     """Give a moving body another velocity, or 0 for what is only the rounding of the change.
 
     Args:
         world, slot: the body.
         vx, vy: the velocity.
-        turn_x, turn_y: how far hits have changed it, without signs.
+        rest_x, rest_y: what rounding may have left of each.
     """
     motion, plan = motions_of(world)[slot], plans_of(world)[slot]
     # What is too large for a number stays so, and is noticed as the step ends.
-    motion.vx = 0.0 if abs(vx) <= NO_APPROACH * turn_x < math.inf else vx
-    motion.vy = 0.0 if abs(vy) <= NO_APPROACH * turn_y < math.inf else vy
+    motion.vx = 0.0 if abs(vx) <= rest_x < math.inf else vx
+    motion.vy = 0.0 if abs(vy) <= rest_y < math.inf else vy
     plan.speed = max(plan.speed, abs(vx) + abs(vy))
 
 
@@ -93,9 +93,9 @@ def bounce_pair(world: WorldView, a: int, b: int, normal_x: float, normal_y: flo
         normal_y,
         restitution_of(world, a, b),
     )
-    turn_x, turn_y = abs(impulse * normal_x), abs(impulse * normal_y)
+    rest_x, rest_y = NO_TURN * abs(impulse * normal_x), NO_TURN * abs(impulse * normal_y)
     if inverse_mass_a > 0.0:
-        turn_velocity(world, one, vx_a, vy_a, turn_x * inverse_mass_a, turn_y * inverse_mass_a)
+        turn_velocity(world, one, vx_a, vy_a, rest_x * inverse_mass_a, rest_y * inverse_mass_a)
     if inverse_mass_b > 0.0:
-        turn_velocity(world, other, vx_b, vy_b, turn_x * inverse_mass_b, turn_y * inverse_mass_b)
+        turn_velocity(world, other, vx_b, vy_b, rest_x * inverse_mass_b, rest_y * inverse_mass_b)
     return impulse

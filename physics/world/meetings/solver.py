@@ -80,13 +80,13 @@ def resolve(world: WorldView, tolerance: float) -> bool:
 
 @kernel
 def group_speed(world: WorldView) -> float:
-    """Return the largest of the members' old speeds, |vx| + |vy|, and of the changes."""
+    """Return the largest of the members' old speeds, |vx| + |vy|, of the changes and the aims."""
     speed = 0.0
     for index in range(progress_of(world).members):
         member = members_of(world)[index]
         speed = max(speed, abs(member.old_vx) + abs(member.old_vy))
     for index in range(progress_of(world).touches):
-        speed = max(speed, touches_of(world)[index].change)
+        speed = max(speed, touches_of(world)[index].change, touches_of(world)[index].aim)
     return speed
 
 

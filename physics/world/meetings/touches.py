@@ -125,7 +125,7 @@ def join(
         world, a, b, normal_x, normal_y, restitution, aim, now, now_low
     ):
         return False
-    if not _append(world, a, b, normal_x, normal_y, restitution, aim):
+    if not append(world, a, b, normal_x, normal_y, restitution, aim):
         return False
     if restitution > 0.0:
         progress.elastic = 1
@@ -135,7 +135,7 @@ def join(
 
 
 @kernel
-def _append(
+def append(
     world: WorldView,
     a: int,
     b: int,
@@ -146,7 +146,7 @@ def _append(
 ) -> bool:
     """Write a touch; return False if there is no room."""
     progress, touches = progress_of(world), touches_of(world)
-    if progress.touches == touches.shape[0]:
+    if progress.touches == touches.shape[0] - 1:  # the last one is for sorting
         return False
     one = add_member(world, traits_of(world)[a].slot)
     other = -1

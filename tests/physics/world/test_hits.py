@@ -21,7 +21,7 @@ from arkanoid.physics import (
     relax,
 )
 from helpers.bodies import DISC, FLOOR, SHAPES
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 
@@ -212,6 +212,8 @@ def test_each_hit_changes_the_next_flight(e: float, times: list[float]) -> None:
     st.sampled_from([1e-9, 1.0, 1e9]),
 )
 @settings(max_examples=60, deadline=None)
+@example(-1.7368674520671905, 5.0, 0.0, 1.0)
+@example(1.73144711541883e-14, 2.0, 0.0, 1e-9)
 def test_a_paddle_hits_a_ball_and_keeps_its_motion(
     paddle: float, approach: float, e: float, mass: float
 ) -> None:

@@ -10,7 +10,7 @@ from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World
 from arkanoid.physics.world.lookup.neighbours import TOO_MANY
 from arkanoid.physics.world.lookup.overrides import find_override, override_table
 from arkanoid.physics.world.lookup.tree import clear_tree, find_leaves, insert_leaf, remove_leaf
-from arkanoid.physics.world.records import Box, Node, Plan, Tree
+from arkanoid.physics.world.records import Box, Entry, Node, Plan, Trait, Tree
 from arkanoid.physics.world.view import LINKS, STACK
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -188,8 +188,12 @@ def test_sensors_cost_what_is_inside() -> None:
     for index in range(200):
         world.add(Body(AxisAlignedRectangle(0.5, 0.5), (index, -5)), sensor=True)
     world.step(0.0)
-    assert len(world.snapshot()) == plain
-    zone = world.add(Body(AxisAlignedRectangle(1, 1), world.positions[150]), sensor=True)
+    of_bodies = 200 * (Trait.itemsize + Entry.itemsize)
+    assert len(world.snapshot()) == plain + of_bodies
+    world.change(499, active=False)
+    world.place(499, world.positions[150])
+    before = len(world.snapshot())
+    world.change(499, active=True)
     entered = world.step(0.0)
-    assert set(entered["b"]) == {zone}
-    assert len(world.snapshot()) == plain + 16 * len(entered)
+    assert set(entered["b"]) == {499}
+    assert len(world.snapshot()) == before + 24 * len(entered)

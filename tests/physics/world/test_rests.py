@@ -62,6 +62,18 @@ def test_a_pile_of_ten_rests(masses: list[float], slope: float) -> None:
     assert world.capped == 0
 
 
+def test_six_stacked_boxes_do_not_sink() -> None:
+    """They overlapped by 0.011 as they fell onto each other, because hits ran out."""
+    boxes = [Body(BOX, (0, 1.05 * y + 0.55), mass=1, restitution=0) for y in range(6)]
+    world = World([FLOOR, *boxes])
+    for _ in range(60):
+        pull(world, 1, 0.16)
+        assert len(world.step(1 / 60)) <= 21
+        assert deepest_overlap(bodies_of(world)) == 0.0
+    assert world.positions[1:, 1] == pytest.approx(np.arange(6) + 0.5, abs=1e-12)
+    assert world.capped == 0
+
+
 @pytest.mark.parametrize("rows", [3, 8])
 def test_a_pyramid_rests(rows: int) -> None:
     """Every box lies on two. Nothing says how they share its weight, but none may move."""

@@ -162,7 +162,7 @@ def test_a_corrupt_snapshot_is_refused() -> None:
         lambda w: w.set_restitution(5, 6, None),
         lambda w: w.change(8, mass=None, restitution=0.25, category=2, mask=5),
         lambda w: w.change(18, active=False),
-        lambda w: [w.add(Body(Particle(0.1), (3, 3), (1, i), 1)) for i in range(40)],
+        lambda w: [w.add(Body(Particle(0.1), (3, 3), (1, i), 1), mask=0) for i in range(40)],
     ],
 )
 @pytest.mark.parametrize("steps", [0, 3])

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from arkanoid.physics import AxisAlignedRectangle, Body, HalfPlane, Particle, World
+from arkanoid.physics.world import setup
 from helpers.bodies import DISC, FLOOR
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -137,3 +138,35 @@ def test_a_simultaneous_bounce_obeys_its_laws(seed: int, count: int, restitution
     assert after <= before + 1e-13
     if restitution == 1:
         assert after == pytest.approx(before, abs=1e-13)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 1.0])
+@pytest.mark.parametrize("seed", range(6))
+def test_what_meets_at_once_is_the_same_whoever_planned_it(
+    seed: int, restitution: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The broad phase, and a restore, changed the order in which a group was resolved.
+
+    Which of two bodies plans that they meet depends on their plans before.
+    """
+    rng = np.random.default_rng(seed)
+    bodies = [Body(FLOOR.collider, restitution=restitution)]
+    for index in range(30):
+        shape = DISC if rng.random() < 0.5 else BOX
+        place = (index % 6 * 1.0, index // 6 + 0.5 + seed % 3 * 0.1)
+        velocity = (rng.choice([-1, 0, 1]), rng.choice([-1, 0, -2]))
+        bodies.append(Body(shape, place, velocity, 1, restitution))
+    bodies.append(Body(Particle(0.5), (-5, 0.5), (3, 0), 2, restitution))
+    followed, restored = World(bodies), World(bodies)
+    hits = [followed.step(0.25) for _ in range(8)]
+    monkeypatch.setattr(setup, "_have_bounds", lambda sizes: np.zeros(len(sizes), bool))
+    tested = World(bodies)
+    expected = np.concatenate([tested.step(0.25) for _ in range(8)])
+    monkeypatch.undo()
+    again = []
+    for _ in range(8):
+        again.append(restored.step(0.25))
+        restored.restore(restored.snapshot())
+    assert len(expected) > 30
+    assert np.concatenate(hits).tobytes() == expected.tobytes()
+    assert np.concatenate(again).tobytes() == expected.tobytes()
