@@ -17,6 +17,7 @@ from .body import FloatArray
 from .errors import InseparableError
 from .pairs.response import bounce_velocities, shares
 from .pairs.table import contact_between, impact_between, overlap_between
+from .pairs.touching import touch_margins
 from .protocols import Collidable, Dynamic, Moving
 from .shapes.colliders import Collider
 from .shapes.table import ShapeTable, shape_table
@@ -50,9 +51,12 @@ class Impact(NamedTuple):
 
 
 def detect(a: Collidable, b: Collidable) -> bool:
-    """Return whether the interiors of a and b overlap. Touching is not overlapping."""
-    shapes, edges, dx, dy = _pair(a, b)
-    return bool(overlap_between(shapes, edges, 0, 1, dx, dy))
+    """Return whether the interiors of a and b overlap. Touching is not overlapping.
+
+    They touch up to an overlap of 1e-12 of their coordinates and sizes, which rounding may hide.
+    """
+    shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
+    return bool(overlap_between(shapes, edges, 0, 1, dx, dy, margin_x, margin_y))
 
 
 def contact(a: Collidable, b: Collidable) -> Contact | None:
@@ -61,8 +65,10 @@ def contact(a: Collidable, b: Collidable) -> Contact | None:
     Moving a by ``-normal * depth`` or b by ``normal * depth`` separates them, and no shorter
     translation does.
     """
-    shapes, edges, dx, dy = _pair(a, b)
-    found, normal_x, normal_y, depth, x, y = contact_between(shapes, edges, 0, 1, dx, dy)
+    shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
+    found, normal_x, normal_y, depth, x, y = contact_between(
+        shapes, edges, 0, 1, dx, dy, margin_x, margin_y
+    )
     if not found:
         return None
     origin_x, origin_y = a.position
@@ -84,7 +90,7 @@ def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> 
         the contact's.
     """
     horizon = checked_duration("duration", duration)
-    shapes, edges, dx, dy = _pair(a, b)
+    shapes, edges, dx, dy, margin_x, margin_y = _pair(a, b)
     velocity_ax, velocity_ay = _velocity(a)
     velocity_bx, velocity_by = _velocity(b)
     time, normal_x, normal_y = impact_between(
@@ -97,6 +103,8 @@ def time_of_impact(a: Collidable, b: Collidable, duration: float = math.inf) -> 
         velocity_bx - velocity_ax,
         velocity_by - velocity_ay,
         horizon,
+        margin_x,
+        margin_y,
     )
     if time == math.inf:
         return None
@@ -202,8 +210,11 @@ def _pair_table(a: Collider, b: Collider) -> ShapeTable:
     return shape_table((a, b))
 
 
-def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
-    """Return (shapes, edges, dx, dy) of two objects: their records, and b's position from a."""
+def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float, float, float]:
+    """Return (shapes, edges, dx, dy, margin_x, margin_y) of two objects.
+
+    These are their records, b's position from a, and up to which gap they touch.
+    """
     try:
         shapes, edges = _pair_table(a.collider, b.collider)
         ax, ay = a.position
@@ -220,7 +231,10 @@ def _pair(a: Any, b: Any) -> tuple[Any, Any, float, float]:
         raise ValueError("the positions are too far apart for a float") from None
     if not (math.isfinite(dx) and math.isfinite(dy)):
         raise ValueError(f"positions must be finite, but are ({ax}, {ay}) and ({bx}, {by})")
-    return shapes, edges, dx, dy
+    margin_x, margin_y = touch_margins(
+        shapes, edges, 0, 1, float(ax), float(ay), float(bx), float(by)
+    )
+    return shapes, edges, dx, dy, margin_x, margin_y
 
 
 def _check(item: Any) -> None:

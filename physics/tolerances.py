@@ -1,8 +1,4 @@
-"""Every tolerance of the engine, with its unit and its reason.
-
-Whether two discs, boxes or a disc and a face overlap, and when they meet, is decided by comparing
-floating-point numbers as they are.
-"""
+"""Every tolerance of the engine, with its unit and its reason."""
 
 # Radians. Two directions closer than this count as parallel. Rotating a polygon leaves errors of
 # about 1e-16 in its normals; two strips that are meant to be parallel must not become inseparable
@@ -17,13 +13,14 @@ NO_SPEED_SQUARED = 1e-290
 # edge shorter than this is a corner: rounding alone can make or unmake it.
 NO_LENGTH = 1e-12
 
-# A fraction of a point's coordinates (plus the overlap itself). A body that moved to where it
-# touches may overlap by a few of the last digits, 1e-16. One that overlaps by more was put there,
-# and is relaxed.
-NO_DEPTH = 1e-12
+# A fraction of the coordinates of two bodies and of their sizes, along an axis: 4096 roundings of
+# these numbers. Up to this gap, and up to this overlap, the two touch. Finding the gap takes about
+# 16 roundings, and each step in which a body slides down a slope adds one. A body that is deeper
+# was put there, and is relaxed.
+TOUCH = 2.0**-41
 
 # A fraction of the bodies' speeds. Bodies that approach more slowly only seem to, by the rounding
-# of the bounce before.
+# of the bounce before. Over a way L they come closer by L * 1e-15.
 NO_APPROACH = 1e-15
 
 # Rounds of relaxation at the beginning of a step. In a pile where each body pushes the next one,

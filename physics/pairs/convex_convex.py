@@ -12,6 +12,7 @@ from ..kernels import kernel
 from ..shapes.records import Edges, ShapeRecord, Shapes
 from ..tolerances import PARALLEL
 from .results import NO_IMPACT, NO_OVERLAP
+from .touching import axis_times, closing_speed, margin_along
 
 
 @kernel
@@ -54,19 +55,56 @@ def separation_along(
 
 @kernel
 def contact_convex_convex(
-    shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    margin_x: float,
+    margin_y: float,
 ) -> tuple[bool, float, float, float]:
     """Return (found, normal_x, normal_y, depth), depth inf if no translation separates them."""
-    normal_x, normal_y, gap = separation_along(shapes, edges, a, b, 0, dx, dy)
-    for axis in range(1, shapes[a].count + shapes[b].count):
-        if gap >= 0.0:
-            break
+    normal_x, normal_y, gap = 0.0, 0.0, -math.inf
+    for axis in range(shapes[a].count + shapes[b].count):
         x, y, candidate = separation_along(shapes, edges, a, b, axis, dx, dy)
-        if candidate > gap:
+        if candidate >= -margin_along(x, y, margin_x, margin_y):
+            return NO_OVERLAP
+        if candidate > gap or axis == 0:
             normal_x, normal_y, gap = x, y, candidate
-    if gap >= 0.0:
-        return NO_OVERLAP
     return True, normal_x, normal_y, -gap
+
+
+@kernel
+def _slower_axis(
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    margin_x: float,
+    margin_y: float,
+    time: float,
+    normal_x: float,
+    normal_y: float,
+) -> tuple[float, float]:
+    """Return the axis along which the two approach most slowly, of all that touch at the time.
+
+    At a corner there are several: a slower one than the given normal changes less. So a body that
+    comes down almost along a floor does not meet the side of the next tile.
+    """
+    margin = margin_along(normal_x, normal_y, margin_x, margin_y)
+    least = closing_speed(normal_x, normal_y, vx, vy, margin)
+    for axis in range(shapes[a].count + shapes[b].count):
+        x, y, gap = separation_along(shapes, edges, a, b, axis, dx, dy)
+        margin = margin_along(x, y, margin_x, margin_y)
+        closing = closing_speed(x, y, vx, vy, margin)
+        if closing < least and axis_times(gap, closing, margin)[1] > time:
+            normal_x, normal_y, least = x, y, closing
+    return normal_x, normal_y
 
 
 @kernel
@@ -80,25 +118,34 @@ def sweep_convex_convex(
     vx: float,
     vy: float,
     duration: float,
+    margin_x: float,
+    margin_y: float,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y); region b starts at (dx, dy) and moves with (vx, vy)."""
-    enter = -1.0
-    leave = math.inf
+    time, sinks, parts = -1.0, -1.0, math.inf
     normal_x = 0.0
     normal_y = 0.0
     for axis in range(shapes[a].count + shapes[b].count):
         x, y, gap = separation_along(shapes, edges, a, b, axis, dx, dy)
-        velocity = x * vx + y * vy
-        if gap >= 0.0:
-            if velocity >= 0.0:
-                return NO_IMPACT
-            if gap / -velocity > enter:
-                enter, normal_x, normal_y = gap / -velocity, x, y
-        elif velocity > 0.0:
-            leave = min(leave, gap / -velocity)
-    if enter < 0.0:
-        _, normal_x, normal_y, _ = contact_convex_convex(shapes, edges, a, b, dx, dy)
+        margin = margin_along(x, y, margin_x, margin_y)
+        axis_touches, axis_sinks, axis_parts = axis_times(
+            gap, closing_speed(x, y, vx, vy, margin), margin
+        )
+        if axis_touches == math.inf:
+            return NO_IMPACT
+        if axis_touches > time:
+            time, normal_x, normal_y = axis_touches, x, y
+        sinks = max(sinks, axis_sinks)
+        parts = min(parts, axis_parts)
+    if time < 0.0:
+        _, normal_x, normal_y, _ = contact_convex_convex(
+            shapes, edges, a, b, dx, dy, margin_x, margin_y
+        )
         return 0.0, normal_x, normal_y
-    if enter >= leave or enter > duration:
+    if sinks >= parts or time > duration:
         return NO_IMPACT
-    return enter, normal_x, normal_y
+    if margin_x > 0.0 or margin_y > 0.0:
+        normal_x, normal_y = _slower_axis(
+            shapes, edges, a, b, dx, dy, vx, vy, margin_x, margin_y, time, normal_x, normal_y
+        )
+    return time, normal_x, normal_y

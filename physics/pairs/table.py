@@ -27,7 +27,7 @@ from ..shapes.records import (
 from .box_box import contact_box_box, sweep_box_box
 from .convex_convex import contact_convex_convex, sweep_convex_convex
 from .disc_box import contact_disc_box, sweep_disc_box
-from .disc_convex import contact_disc_convex, sweep_disc_convex
+from .disc_convex import contact_disc_convex, sweep_disc_convex, sweep_point_convex
 from .disc_disc import contact_disc_disc, sweep_disc_disc
 from .disc_half_plane import contact_disc_half_plane, sweep_disc_half_plane
 from .results import NO_CONTACT, NO_IMPACT
@@ -138,29 +138,54 @@ def _is_swapped(shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: flo
 
 @kernel
 def _contact(
-    shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    margin_x: float,
+    margin_y: float,
 ) -> tuple[bool, float, float, float, float, float]:
     """Return the contact of a pair in registered order."""
     first = shapes[a]
     second = shapes[b]
     algorithm = ALGORITHM[first.kind, second.kind]
     if algorithm == DISC_DISC:
-        return contact_disc_disc(first.radius, second.radius, dx, dy)
+        return contact_disc_disc(first.radius, second.radius, dx, dy, margin_x, margin_y)
     if algorithm == DISC_BOX:
-        return contact_disc_box(first.radius, second.upper_x, second.upper_y, dx, dy)
+        return contact_disc_box(
+            first.radius, second.upper_x, second.upper_y, dx, dy, margin_x, margin_y
+        )
     if algorithm == DISC_CONVEX:
-        return contact_disc_convex(first.radius, edges, second.first, second.count, dx, dy)
+        return contact_disc_convex(
+            first.radius, edges, second.first, second.count, dx, dy, margin_x, margin_y
+        )
     if algorithm == DISC_HALF_PLANE:
         edge = edges[second.first]
         return contact_disc_half_plane(
-            first.radius, edge.normal_x, edge.normal_y, edge.offset, dx, dy
+            first.radius,
+            edge.normal_x,
+            edge.normal_y,
+            edge.offset,
+            dx,
+            dy,
+            margin_x,
+            margin_y,
         )
     if algorithm == BOX_BOX:
         found, normal_x, normal_y, depth = contact_box_box(
-            first.upper_x + second.upper_x, first.upper_y + second.upper_y, dx, dy
+            first.upper_x + second.upper_x,
+            first.upper_y + second.upper_y,
+            dx,
+            dy,
+            margin_x,
+            margin_y,
         )
     else:
-        found, normal_x, normal_y, depth = contact_convex_convex(shapes, edges, a, b, dx, dy)
+        found, normal_x, normal_y, depth = contact_convex_convex(
+            shapes, edges, a, b, dx, dy, margin_x, margin_y
+        )
     if not found:
         return NO_CONTACT
     x, y = touching_point(shapes, edges, a, b, dx, dy, normal_x, normal_y)
@@ -178,25 +203,62 @@ def _impact(
     vx: float,
     vy: float,
     duration: float,
+    margin_x: float,
+    margin_y: float,
 ) -> tuple[float, float, float]:
     """Return the impact of a pair in registered order."""
     first = shapes[a]
     second = shapes[b]
     algorithm = ALGORITHM[first.kind, second.kind]
     if algorithm == DISC_DISC:
-        return sweep_disc_disc(first.radius, second.radius, dx, dy, vx, vy, duration)
-    if algorithm == DISC_BOX:
-        return sweep_disc_box(
-            first.radius, second.upper_x, second.upper_y, dx, dy, vx, vy, duration
-        )
-    if algorithm == DISC_CONVEX:
-        return sweep_disc_convex(
-            first.radius, edges, second.first, second.count, dx, dy, vx, vy, duration
+        return sweep_disc_disc(
+            first.radius, second.radius, dx, dy, vx, vy, duration, margin_x, margin_y
         )
     if algorithm == DISC_HALF_PLANE:
         edge = edges[second.first]
         return sweep_disc_half_plane(
-            first.radius, edge.normal_x, edge.normal_y, edge.offset, dx, dy, vx, vy, duration
+            first.radius,
+            edge.normal_x,
+            edge.normal_y,
+            edge.offset,
+            dx,
+            dy,
+            vx,
+            vy,
+            duration,
+            margin_x,
+            margin_y,
+        )
+    if first.radius == 0.0 and algorithm in (DISC_BOX, DISC_CONVEX):
+        return sweep_point_convex(
+            edges, second.first, second.count, dx, dy, vx, vy, duration, margin_x, margin_y
+        )
+    if algorithm == DISC_BOX:
+        return sweep_disc_box(
+            first.radius,
+            second.upper_x,
+            second.upper_y,
+            dx,
+            dy,
+            vx,
+            vy,
+            duration,
+            margin_x,
+            margin_y,
+        )
+    if algorithm == DISC_CONVEX:
+        return sweep_disc_convex(
+            first.radius,
+            edges,
+            second.first,
+            second.count,
+            dx,
+            dy,
+            vx,
+            vy,
+            duration,
+            margin_x,
+            margin_y,
         )
     if algorithm == BOX_BOX:
         return sweep_box_box(
@@ -207,32 +269,52 @@ def _impact(
             vx,
             vy,
             duration,
+            margin_x,
+            margin_y,
         )
-    return sweep_convex_convex(shapes, edges, a, b, dx, dy, vx, vy, duration)
+    return sweep_convex_convex(shapes, edges, a, b, dx, dy, vx, vy, duration, margin_x, margin_y)
 
 
 @kernel
 def contact_between(
-    shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    margin_x: float = 0.0,
+    margin_y: float = 0.0,
 ) -> tuple[bool, float, float, float, float, float]:
     """Return (found, normal_x, normal_y, depth, point_x, point_y) for b at (dx, dy) from a.
 
     The unit normal points from a to b; depth is the shortest translation that separates (inf if
     no translation does); the point is relative to a, halfway between the surfaces that separate
-    along the normal. Nothing is found if the two merely touch.
+    along the normal. Nothing is found if the two merely touch, within the margins of `touching`.
     """
     if _is_swapped(shapes, edges, a, b, dx, dy):
-        found, normal_x, normal_y, depth, x, y = _contact(shapes, edges, b, a, -dx, -dy)
+        found, normal_x, normal_y, depth, x, y = _contact(
+            shapes, edges, b, a, -dx, -dy, margin_x, margin_y
+        )
         if not found:
             return NO_CONTACT
         return True, -normal_x, -normal_y, depth, x + dx, y + dy
-    return _contact(shapes, edges, a, b, dx, dy)
+    return _contact(shapes, edges, a, b, dx, dy, margin_x, margin_y)
 
 
 @kernel
-def overlap_between(shapes: Shapes, edges: Edges, a: int, b: int, dx: float, dy: float) -> bool:
+def overlap_between(
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    margin_x: float = 0.0,
+    margin_y: float = 0.0,
+) -> bool:
     """Return whether the interiors of a and of b, at (dx, dy) from a, overlap."""
-    return contact_between(shapes, edges, a, b, dx, dy)[0]
+    return contact_between(shapes, edges, a, b, dx, dy, margin_x, margin_y)[0]
 
 
 @kernel
@@ -246,17 +328,22 @@ def impact_between(
     vx: float,
     vy: float,
     duration: float,
+    margin_x: float = 0.0,
+    margin_y: float = 0.0,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y) for b at (dx, dy) from a, moving with (vx, vy).
 
     Time is when the two touch and begin to overlap, at most ``duration``. It is inf if they never
-    begin to overlap: if they stay apart, touch and separate, or slide past each other. If they
-    overlap already, it is 0 and the normal is the contact's. The unit normal points from a to b.
+    begin to overlap: if they stay apart, touch and separate, or slide past each other, all within
+    the margins of `touching`. If they overlap already, it is 0 and the normal is the contact's. The
+    unit normal points from a to b.
     """
     is_swapped = _is_swapped(shapes, edges, a, b, dx, dy)
     if is_swapped:
         a, b, dx, dy, vx, vy = b, a, -dx, -dy, -vx, -vy
-    time, normal_x, normal_y = _impact(shapes, edges, a, b, dx, dy, vx, vy, duration)
+    time, normal_x, normal_y = _impact(
+        shapes, edges, a, b, dx, dy, vx, vy, duration, margin_x, margin_y
+    )
     # The time may be too large for a number, at a speed of 1e-320 for instance.
     if not time < math.inf:
         return NO_IMPACT

@@ -44,6 +44,30 @@ def support_feature(
 
 
 @kernel
+def shared_stretch(
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    normal_x: float,
+    normal_y: float,
+) -> tuple[float, float, float]:
+    """Return (height, low, high) of where the surfaces of a and b face each other along a normal.
+
+    It lies halfway between them, ``height`` along the normal, and spans ``low`` to ``high`` along
+    (-normal_y, normal_x), both relative to a: perhaps infinite, one value at a corner or disc.
+    """
+    top, low_a, high_a = support_feature(shapes[a], edges, normal_x, normal_y)
+    depth, low_b, high_b = support_feature(shapes[b], edges, -normal_x, -normal_y)
+    # b's interval runs along the opposite direction.
+    along = normal_x * dy - normal_y * dx
+    height = 0.5 * (top + (normal_x * dx + normal_y * dy - depth))
+    return height, max(low_a, along - high_b), min(high_a, along - low_b)
+
+
+@kernel
 def touching_point(
     shapes: Shapes,
     edges: Edges,
@@ -55,12 +79,7 @@ def touching_point(
     normal_y: float,
 ) -> tuple[float, float]:
     """Return the point, relative to a, halfway between the surfaces that meet along the normal."""
-    top, low_a, high_a = support_feature(shapes[a], edges, normal_x, normal_y)
-    depth, low_b, high_b = support_feature(shapes[b], edges, -normal_x, -normal_y)
-    # b's interval runs along the opposite direction.
-    along = normal_x * dy - normal_y * dx
-    low = max(low_a, along - high_b)
-    high = min(high_a, along - low_b)
+    height, low, high = shared_stretch(shapes, edges, a, b, dx, dy, normal_x, normal_y)
     if low == -math.inf and high == math.inf:
         middle = 0.0
     elif low == -math.inf:
@@ -69,5 +88,4 @@ def touching_point(
         middle = low
     else:
         middle = 0.5 * (low + high)
-    height = 0.5 * (top + (normal_x * dx + normal_y * dy - depth))
     return height * normal_x - middle * normal_y, height * normal_y + middle * normal_x

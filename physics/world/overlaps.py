@@ -7,7 +7,8 @@ from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..tolerances import NO_DEPTH, RELAX_ROUNDS
+from ..pairs.touching import touch_margins
+from ..tolerances import RELAX_ROUNDS
 from .events import enter_sensor, has_room, write_event
 from .grid import enter_all, find_near
 from .impacts import bounce_pair
@@ -42,8 +43,8 @@ def relax_overlaps(world: WorldView) -> bool:
             body = moving_of(world)[slot]
             for index in range(find_near(world, slot, True)):
                 other = near_of(world)[index]
-                found, normal_x, normal_y, depth, x, y = _solid_contact(world, body, other)
-                if found and depth > NO_DEPTH * (abs(x) + abs(y) + depth):
+                found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
+                if found:
                     _move_apart(world, body, other, normal_x, normal_y, depth)
                     is_done = False
         if is_done:
@@ -73,13 +74,11 @@ def _contact_at(
     """Return the contact of two bodies at a time, with the point in the world's coordinates."""
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
+    shapes, edges = shapes_of(world), edges_of(world)
+    first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
+    margin_x, margin_y = touch_margins(shapes, edges, first, second, ax, ay, bx, by)
     found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes_of(world),
-        edges_of(world),
-        traits_of(world)[a].collider,
-        traits_of(world)[b].collider,
-        bx - ax,
-        by - ay,
+        shapes, edges, first, second, bx - ax, by - ay, margin_x, margin_y
     )
     return found, normal_x, normal_y, depth, ax + x, ay + y
 

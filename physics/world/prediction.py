@@ -8,6 +8,8 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch
+from ..pairs.touching import touch_margins
+from ..pairs.touching_point import shared_stretch
 from ..shapes.records import Edges, ShapeRecord
 from ..tolerances import NO_APPROACH, SAME_POINT
 from .clock_time import elapsed, later
@@ -85,18 +87,54 @@ def _skewness(shape: ShapeRecord, edges: Edges, x: float, y: float) -> float:
 
 
 @kernel
-def _is_straighter(
-    world: WorldView, plan: PlanRecord, other: int, normal_x: float, normal_y: float
-) -> bool:
-    """Return whether a body is met more along a face's normal than the partner that is planned.
+def _facing_length(
+    world: WorldView,
+    a: int,
+    b: int,
+    now: float,
+    now_low: float,
+    ahead: float,
+    normal_x: float,
+    normal_y: float,
+) -> float:
+    """Return along which length two bodies face each other some time ahead, when they meet."""
+    shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
+    x, y, vx, vy = motion_at(world, a, now, now_low)
+    their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
+    dx = (their_x - x) + (their_vx - vx) * ahead
+    dy = (their_y - y) + (their_vy - vy) * ahead
+    one, other = traits[a].collider, traits[b].collider
+    _, low, high = shared_stretch(shapes, edges, one, other, dx, dy, normal_x, normal_y)
+    return high - low
 
-    This decides between two bodies that are met at the same time, within rounding. A disc that
-    lands on the seam of two boxes meets the face of one and not the corner of the other.
+
+@kernel
+def _is_straighter(
+    world: WorldView,
+    plan: PlanRecord,
+    body: int,
+    other: int,
+    now: float,
+    now_low: float,
+    ahead: float,
+    normal_x: float,
+    normal_y: float,
+) -> bool:
+    """Return whether a body is met more along a face than the partner that is planned.
+
+    This decides between two bodies that are met at the same time, within rounding, some time ahead.
+    A disc that lands on the seam of two boxes meets the face of one and not the corner of the
+    other. A box that lands there meets the one on which it lies, and not the other's side.
     """
     shapes, edges, traits = shapes_of(world), edges_of(world), traits_of(world)
     rank = _skewness(shapes[traits[other].collider], edges, normal_x, normal_y)
     partner = shapes[traits[plan.partner].collider]
     best_rank = _skewness(partner, edges, plan.normal_x, plan.normal_y)
+    if rank == best_rank:
+        rank = -_facing_length(world, body, other, now, now_low, ahead, normal_x, normal_y)
+        best_rank = -_facing_length(
+            world, body, plan.partner, now, now_low, ahead, plan.normal_x, plan.normal_y
+        )
     return bool(rank < best_rank or (rank == best_rank and other < plan.partner))
 
 
@@ -144,8 +182,21 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             continue
         if is_capped(world, trait.slot) or is_inside(world, own, body, trait, other):
             continue
+        margin_x, margin_y = touch_margins(
+            shapes, edges, own.collider, trait.collider, x, y, their_x, their_y
+        )
         time, normal_x, normal_y = impact_between(
-            shapes, edges, own.collider, trait.collider, dx, dy, ux, uy, best + slack
+            shapes,
+            edges,
+            own.collider,
+            trait.collider,
+            dx,
+            dy,
+            ux,
+            uy,
+            best + slack,
+            margin_x,
+            margin_y,
         )
         if time == math.inf:
             continue
@@ -155,7 +206,9 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             if not _approaches(ux, uy, normal_x, normal_y, speed):
                 continue
         if plan.kind == MEET and abs(time - best) <= slack:
-            is_first = _is_straighter(world, plan, other, normal_x, normal_y)
+            is_first = _is_straighter(
+                world, plan, body, other, now, now_low, best, normal_x, normal_y
+            )
         else:
             # At the same time, a meeting comes before a crossing. Of two meetings, the order of the
             # bodies decides, not the order of the grid.

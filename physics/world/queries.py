@@ -4,6 +4,7 @@ import math
 
 from ..kernels import kernel
 from ..pairs.table import impact_between, may_touch, overlap_between
+from ..pairs.touching import touch_margins
 from ..shapes.records import Edges, Shapes
 from .records import Block, Indices, TraitRecord
 from .view import WorldView, motions_of, open_world, traits_of
@@ -45,11 +46,14 @@ def find_overlapping(
         trait = traits_of(world)[body]
         if (trait.category & mask) == 0:
             continue
-        dx, dy = _position(world, trait)
-        dx, dy = dx - x, dy - y
+        their_x, their_y = _position(world, trait)
+        dx, dy = their_x - x, their_y - y
         if not may_touch(shapes, own, trait.collider, dx, dy, 0.0, 0.0, 0.0):
             continue
-        if overlap_between(shapes, edges, own, trait.collider, dx, dy):
+        margin_x, margin_y = touch_margins(
+            shapes, edges, own, trait.collider, x, y, their_x, their_y
+        )
+        if overlap_between(shapes, edges, own, trait.collider, dx, dy, margin_x, margin_y):
             found[count] = body
             count += 1
     return count
@@ -79,13 +83,26 @@ def find_first(
         trait = traits_of(world)[body]
         if (trait.category & mask) == 0:
             continue
-        dx, dy = _position(world, trait)
-        dx, dy = dx - x, dy - y
+        their_x, their_y = _position(world, trait)
+        dx, dy = their_x - x, their_y - y
         reach = min(best, 1.0)
         if not may_touch(shapes, own, trait.collider, dx, dy, -way_x, -way_y, reach):
             continue
+        margin_x, margin_y = touch_margins(
+            shapes, edges, own, trait.collider, x, y, their_x, their_y
+        )
         time, out_x, out_y = impact_between(
-            shapes, edges, own, trait.collider, dx, dy, -way_x, -way_y, reach
+            shapes,
+            edges,
+            own,
+            trait.collider,
+            dx,
+            dy,
+            -way_x,
+            -way_y,
+            reach,
+            margin_x,
+            margin_y,
         )
         if time < best:
             first, best, normal_x, normal_y = body, time, out_x, out_y
