@@ -58,7 +58,7 @@ class Questions:
     def positions(self) -> FloatArray:
         """The positions of all bodies: float64 [n, 2], a read-only copy (see `place`).
 
-        Row i is of the body ``handles[i]``. `body` returns a single one.
+        Row i is of the body ``handles[i]``. For a single body, `position` is faster.
         """
         return _read_only(self.site.places(0))
 
@@ -77,6 +77,16 @@ class Questions:
     def capped(self) -> int:
         """How often a body has used up its hits of a step, or had no room."""
         return int(self.site.clock.capped)
+
+    @alone
+    def position(self, handle: int) -> FloatArray:
+        """The position of a body, float64 [2], a copy."""
+        return np.array(self.site.place_of(self._index(handle))[:2])
+
+    @alone
+    def velocity(self, handle: int) -> FloatArray:
+        """The velocity of a body, float64 [2], a copy."""
+        return np.array(self.site.place_of(self._index(handle))[2:])
 
     @alone
     def body(self, handle: int) -> Body:

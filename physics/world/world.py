@@ -55,7 +55,7 @@ class World(Questions):
     """
 
     def __init__(
-        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 1000
+        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 10_000
     ) -> None:
         self._max_hits = whole("max_hits", max_hits, at_least=1)
         setup = Setup(FIRST_ROOM, self._max_hits, bool(continuous))

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World
 
 from .sandbox import STEP, Pair
@@ -36,11 +37,11 @@ class ArkanoidSandbox:
             self.crates.remove(handle)
 
     def position(self, handle: Any) -> Pair:
-        x, y = self.world.positions[handle]
+        x, y = self.world.position(handle)
         return float(x), float(y)
 
     def velocity(self, handle: Any) -> Pair:
-        x, y = self.world.velocities[handle]
+        x, y = self.world.velocity(handle)
         return float(x), float(y)
 
     def push(self, handle: Any, velocity: Pair) -> None:
@@ -54,8 +55,10 @@ class ArkanoidSandbox:
         self.world.step(STEP)
 
     def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:
-        hits = [self.world.query_ray(start, end) for start, end in rays]
-        return [None if hit is None else hit.fraction for hit in hits]
+        starts, ends = np.array(rays).swapaxes(0, 1)
+        hits = self.world.query_rays(starts, ends)
+        missed = hits.bodies < 0
+        return [None if miss else part for miss, part in zip(missed, hits.fractions, strict=True)]
 
 
 SANDBOX = ArkanoidSandbox
