@@ -18,7 +18,7 @@ from .lookup.tree import NO_ONE
 from .meetings.impact import impact_of, may_meet
 from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
-from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
+from .records import HELD, INDEX_BITS, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
@@ -71,7 +71,7 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     _find_event(world, slot, now, now_low, only_later)
     body = moving_of(world)[slot]
     partner = plan.partner if plan.kind == MEET else body
-    plan.pair = (min(body, partner) << 32) | max(body, partner)
+    plan.pair = (min(body, partner) << INDEX_BITS) | max(body, partner)
     if plan.kind == MEET:
         join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)

@@ -49,6 +49,10 @@ UNUSED = 0  # none
 ON = 1
 OFF = 2  # one that meets nothing, and stays where it is
 
+# The index of a body has so many bits: in a handle, and in the number of a pair (`Plan.pair`).
+INDEX_BITS = 32
+INDEX_MASK = (1 << INDEX_BITS) - 1
+
 # With so few moving bodies there is no grid of them.
 FEW_MOVING = 8
 

@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from ...tolerances import FARTHEST
 from ..lookup.tree import NO_ONE
-from ..records import END, OFF, ON, UNPLANNED, UNUSED
+from ..records import END, INDEX_MASK, OFF, ON, UNPLANNED, UNUSED
 from ..setup import have_bounds
-from .edits import INDEX_MASK, LAST_HANDLE
+from .edits import LAST_HANDLE
 
 _MANY = 1 << 60  # of what is counted
 

@@ -3,7 +3,7 @@
 from ...kernels import kernel
 from ..lookup.overrides import put_override
 from ..lookup.tree import NO_ONE
-from ..records import OFF, ON, UNUSED, Block, Hits
+from ..records import INDEX_BITS, OFF, ON, UNUSED, Block, Hits
 from ..view import (
     WorldView,
     entries_of,
@@ -18,8 +18,6 @@ from .endings import end_pairs, note_moved
 from .slots import give_slot, place_of, take_slot
 
 # A handle is an index in its low bits, and above it how many bodies had this index before.
-INDEX_BITS = 32
-INDEX_MASK = (1 << INDEX_BITS) - 1
 NEXT_GENERATION = 1 << INDEX_BITS
 LAST_HANDLE = (1 << 63) - NEXT_GENERATION  # from here on, an index is not used again
 

@@ -12,6 +12,7 @@ from ...shapes.colliders import Collider
 from ..lookup.inside import FEW_PAIRS, inside_block, pairs_inside
 from ..lookup.tree import NO_ONE
 from ..records import (
+    INDEX_MASK,
     NEW,
     OFF,
     PLANNED,
@@ -27,7 +28,6 @@ from ..records import (
 )
 from ..setup import ByteArray, Setup, inseparable_pair
 from .edits import (
-    INDEX_MASK,
     add_body,
     change_body,
     change_override,
