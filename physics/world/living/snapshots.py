@@ -267,7 +267,7 @@ def _write(
     pending: npt.NDArray[Any],
 ) -> None:
     """Write what was kept of a world into its blocks."""
-    for name in Clock.names:
+    for name in Clock.names or ():
         site.clock[name] = clock[name]
     for name in MOTIONS:
         site.setup.records(site.state, name, Motion)[:] = kept[name]
