@@ -226,7 +226,8 @@ class Setup:
         for name in ("a", "b"):
             index = kept[name] & ((1 << 32) - 1)
             kept = kept[(handles[index] == kept[name]) & (self.entries["state"][index] != UNUSED)]
-        return kept[np.lexsort((kept["b"], kept["a"]))]
+        ordered: npt.NDArray[Any] = kept[np.lexsort((kept["b"], kept["a"]))]
+        return ordered
 
     def use_overrides(self, pairs: npt.NDArray[Any]) -> None:
         """Use these restitutions of pairs, `Override` [n], with room for as many more."""
@@ -305,7 +306,8 @@ def _tables(setup: Setup) -> list[tuple[str, Any, int]]:
 def _sizes_of(shapes: npt.NDArray[Any]) -> FloatArray:
     """Return how far shapes reach from their origin along the axes, float64 [n]."""
     sides = [np.abs(shapes[name]) for name in ("lower_x", "lower_y", "upper_x", "upper_y")]
-    return np.max(sides, axis=0)
+    sizes: FloatArray = np.max(sides, axis=0)
+    return sizes
 
 
 def have_bounds(shapes: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:

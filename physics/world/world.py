@@ -180,7 +180,7 @@ class World(Questions):
         if first == second:
             raise ValueError(f"a pair is of two bodies, but both are {a}")
         value = math.nan if restitution is None else not_negative("restitution", restitution)
-        self.site.override(*sorted((int(a), int(b))), value)
+        self.site.override(min(int(a), int(b)), max(int(a), int(b)), value)
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
         """Step the world ``steps`` times by ``dt``; return what happened.

@@ -222,21 +222,29 @@ class Site:
         setup, ends = self._begin_edit(), self._ends()
         if moves and setup.entries[index]["state"] != OFF:
             self._make_room_to_move()
-        count = place_body(self.state, self.inside, setup.workspace, index, *motion, ends)
+        x, y, vx, vy = motion
+        count = place_body(self.state, self.inside, setup.workspace, index, x, y, vx, vy, ends)
         self._after_edit(bool(setup.traits[index]["boundless"]), ends[:count])
 
     def change(
-        self, index: int, is_on: bool, mass: float, inverse_mass: float, *traits: Any
+        self,
+        index: int,
+        is_on: bool,
+        mass: float,
+        inverse_mass: float,
+        category: int,
+        mask: int,
+        is_sensor: bool,
     ) -> None:
         """Change whether a body is on, its mass, and its category, mask and whether it senses."""
         setup, ends = self._begin_edit(), self._ends()
         if is_on and setup.traits[index]["slot"] == NO_ONE:
             self._make_room_to_move()
-        if traits[-1]:
+        if is_sensor:
             self._begin_to_sense()
         count = change_body(
             *(self.state, self.inside, setup.workspace, index, is_on, mass, inverse_mass),
-            *(*traits, ends),
+            *(category, mask, is_sensor, ends),
         )
         self._after_edit(bool(setup.traits[index]["boundless"]), ends[:count])
 

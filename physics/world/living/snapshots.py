@@ -259,7 +259,7 @@ def _write(
     pending: npt.NDArray[Any],
 ) -> None:
     """Write what was kept of a world into its blocks."""
-    for name in Clock.names:
+    for name in Clock.names or ():
         site.clock[name] = clock[name]
     for name, dtype in MOTIONS.items():
         site.setup.records(site.state, name, dtype)[:] = kept[name]
