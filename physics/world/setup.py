@@ -368,7 +368,7 @@ def _new_workspace(room: Room) -> ByteArray:
     for name, (dtype, count) in parts.items():
         header[f"{name}_at"] = at
         at += in_lines(dtype.itemsize * count)
-    workspace = aligned_bytes(1, at)[0]
+    workspace: ByteArray = aligned_bytes(1, at)[0]
     workspace[: header.nbytes] = header.view(np.uint8)
     return workspace
 

@@ -30,7 +30,7 @@ class Stepper:
         self._hits: npt.NDArray[Any] = np.zeros(FIRST_ROOM, Hit)
         self._call: npt.NDArray[np.int64] | None = None
         self._last: npt.NDArray[np.int64] | None = None
-        self.has_pending = False
+        self.has_pending = self._has_sensors = False
         for site in sites:
             site.steppers.append(self)
 
@@ -49,6 +49,7 @@ class Stepper:
             for site in self._sites:
                 site.check()
                 self.has_pending |= len(site.pending) > 0
+            self._has_sensors = any(site.setup.header.sensors for site in self._sites)
             blocks = [(site.state, site.inside, site.setup.workspace) for site in self._sites]
             self._call = call_of(blocks, self._hits, self._last)
         return self._call
@@ -78,7 +79,7 @@ class Stepper:
         hits = self._hits[:count].copy()
         if self.has_pending:
             hits = self._with_pending(hits)
-        if (hits["kind"] == END).any():
+        if self._has_sensors and (hits["kind"] == END).any():
             # That a body left a sensor is known later than it happened.
             hits = hits[np.lexsort((hits["time"], hits["world"]))]
         return hits

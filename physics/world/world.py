@@ -209,8 +209,8 @@ class World(Questions):
         finally:
             guard.taken = False
         site = self.site
-        if len(hits) and site.clock.capped != site.warned:
-            site.warned = int(site.clock.capped)
+        if len(hits) and site.clock["capped"] != site.warned:
+            site.warned = int(site.clock["capped"])
             warnings.warn(
                 "a body has no room, or used up the hits of a step (max_hits="
                 f"{self._max_hits}); for the rest of it, it did not bounce. If it is only "

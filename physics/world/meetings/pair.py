@@ -52,9 +52,10 @@ def restitution_of(world: WorldView, a: int, b: int) -> float:
     It is 0 if none of the two may bounce any more in this step, or loses speed at each of too many
     hits at the same time.
     """
-    entries = entries_of(world)
-    one, other = entries[a].handle, entries[b].handle
-    restitution = find_override(overrides_of(world), min(one, other), max(one, other))
+    overrides, restitution = overrides_of(world), math.nan
+    if overrides.shape[0] > 0:
+        one, other = entries_of(world)[a].handle, entries_of(world)[b].handle
+        restitution = find_override(overrides, min(one, other), max(one, other))
     if math.isnan(restitution):
         restitution = float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
     if progress_of(world).inert:
