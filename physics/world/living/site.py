@@ -140,12 +140,21 @@ class Site:
     def check(self) -> None:
         """Prepare a step; raise an InseparableError if nothing separates bodies that bounce."""
         if self.clock.planned == NEW:
-            self.setup.tune()
+            self._tune()
         if not self._is_checked:
             pair = inseparable_pair(self.setup)
             if pair is not None:
                 raise InseparableError(*(self.body(index) for index in pair))
             self._is_checked = True
+
+    def _tune(self) -> None:
+        """Let the lookup suit the bodies. Grids that a query has made do not fit then."""
+        before = float(self.setup.header.cell)
+        self.setup.tune()
+        if self.setup.header.cell != before:
+            for site in self.family.sites:
+                if site.setup is self.setup:
+                    site.unplan()
 
     # Edits.
 
