@@ -77,7 +77,7 @@ class Site:
         self.family: Family
         self.warned = 0
         self.pending = NO_HITS
-        self._is_checked = False
+        self._is_checked = self._is_tuned = False
         self.inside = inside_block(np.zeros((0, 3), np.int64), self.heads(), FEW_PAIRS)
         self.use_state(states[row])
 
@@ -139,7 +139,7 @@ class Site:
 
     def check(self) -> None:
         """Prepare a step; raise an InseparableError if nothing separates bodies that bounce."""
-        if self.clock.planned == NEW:
+        if self.clock.planned == NEW and not self._is_tuned:
             self._tune()
         if not self._is_checked:
             pair = inseparable_pair(self.setup)
@@ -149,6 +149,7 @@ class Site:
 
     def _tune(self) -> None:
         """Let the lookup suit the bodies. Grids that a query has made do not fit then."""
+        self._is_tuned = True
         before = float(self.setup.header.cell)
         self.setup.tune()
         if self.setup.header.cell != before:
@@ -160,6 +161,7 @@ class Site:
 
     def _begin_edit(self) -> Setup:
         """Return the setup, which no other world uses from now on."""
+        self._is_tuned = False
         if self.setup.users > 1:
             own = self.setup.copy()
             self.halt()

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World, WorldBatch
+from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World
 from arkanoid.physics.world.lookup.neighbours import TOO_MANY
 from arkanoid.physics.world.lookup.overrides import find_override, override_table
 from arkanoid.physics.world.lookup.tree import clear_tree, find_leaves, insert_leaf, remove_leaf
@@ -199,16 +199,17 @@ def test_sensors_cost_what_is_inside() -> None:
     assert len(world.snapshot()) == before + 24 * len(entered)
 
 
-@pytest.mark.parametrize("radius", [1e-3, 1.0, 1e3])
-def test_a_query_before_the_first_step_finds_the_same_after_a_snapshot(radius: float) -> None:
-    """The cells were chosen again, to suit the bodies, but the grid kept those from before."""
-    disc = Particle(radius)
-    places = [(10 * radius * (index % 5), 10 * radius * (index // 5)) for index in range(25)]
-    world = World([Body(disc, place, (1, 0), 1) for place in places])
-    batch = WorldBatch(world, 2)
-    for each in (world, batch[1]):
-        assert [each.query_point(place).tolist() for place in places] == [[i] for i in range(25)]
-    world.snapshot()
-    batch[0].step(0.0)
-    for each in (world, batch[1]):
-        assert [each.query_point(place).tolist() for place in places] == [[i] for i in range(25)]
+def test_queries_before_the_first_step_find_the_same_when_cells_change() -> None:
+    """The cells were chosen again, to suit the bodies, but the grid kept those from before.
+
+    They depend on how far bodies are apart: also on those that are off, and not in the grid.
+    """
+    places = [(10 * (index % 5), 10 * (index // 5)) for index in range(25)]
+    world = World([Body(Particle(1), place, (1, 0), 1) for place in places])
+    others = [world.add(Body(Particle(1), (20, 20))) for _ in range(50)]
+    for other in others:
+        world.change(other, active=False)
+    for far in (20, 1e4):
+        for index, other in enumerate(others):
+            world.place(other, (far * (index % 7), far * (index // 7)))
+        assert [world.query_point(place).tolist() for place in places] == [[i] for i in range(25)]
