@@ -18,7 +18,7 @@ from .lookup.tree import NO_ONE
 from .meetings.impact import impact_of, may_meet
 from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
-from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
+from .records import HELD, INDEX_BITS, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
@@ -63,7 +63,7 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
             consider this one).
     """
     plan = plans_of(world)[slot]
-    _forget_partner(world, slot)
+    forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
     plan.slack = 0.0
@@ -71,14 +71,14 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     _find_event(world, slot, now, now_low, only_later)
     body = moving_of(world)[slot]
     partner = plan.partner if plan.kind == MEET else body
-    plan.pair = min(body, partner) * traits_of(world).shape[0] + max(body, partner)
+    plan.pair = (min(body, partner) << INDEX_BITS) | max(body, partner)
     if plan.kind == MEET:
-        _join_suitors(world, slot)
+        join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
-def _join_suitors(world: WorldView, slot: int) -> None:
+def join_suitors(world: WorldView, slot: int) -> None:
     """Put a body into the list of those that plan to meet its partner, if the partner moves."""
     plans = plans_of(world)
     plan = plans[slot]
@@ -94,7 +94,7 @@ def _join_suitors(world: WorldView, slot: int) -> None:
 
 
 @kernel
-def _forget_partner(world: WorldView, slot: int) -> None:
+def forget_partner(world: WorldView, slot: int) -> None:
     """Let a body plan nothing, and take it out of the list in which it is."""
     plans = plans_of(world)
     plan = plans[slot]

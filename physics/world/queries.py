@@ -16,6 +16,7 @@ from .records import Block, Indices, Ray, RayRecord, TraitRecord
 from .view import (
     WorldView,
     boundless_of,
+    entries_of,
     found_of,
     grid_of,
     header_of,
@@ -68,7 +69,7 @@ def find_overlapping(
     mask: int,
     found: Indices,
 ) -> int:
-    """Write the bodies that overlap the last shape, at (x, y), into ``found``; return how many.
+    """Write the handles of the bodies into ``found`` that overlap the last shape; return how many.
 
     Args:
         state, workspace: of the world.
@@ -112,7 +113,7 @@ def find_overlapping(
             shapes, edges, own, trait.collider, x, y, their_x, their_y
         )
         if overlap_between(shapes, edges, own, trait.collider, dx, dy, margin_x, margin_y):
-            found[count] = body
+            found[count] = entries_of(world)[body].handle
             count += 1
     return count
 
@@ -152,6 +153,8 @@ def find_first(
         if header_of(world).has_grid:
             for level in range(grid_of(world).lowest, grid_of(world).highest + 1):
                 _try_level(world, shapes, edges, ray, mask, level)
+        if ray.body >= 0:
+            ray.body = entries_of(world)[ray.body].handle
 
 
 @kernel

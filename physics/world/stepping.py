@@ -1,11 +1,13 @@
 """A step of a world: its beginning, its events, its end."""
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from ..kernels import kernel
+from ..kernels import accessor, kernel
 from ..kernels.borrowed import BYTE
 from ..kernels.portable.addresses import array_at
 from ..tolerances import FARTHEST, MOST_RESTS
@@ -15,9 +17,20 @@ from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import run_events
 from .lookup.boxes import first_margin, fit_all, fit_here
 from .lookup.tree import NO_ONE
-from .overlaps import relax_overlaps, resolve_overlaps
+from .overlaps import put_in_order, relax_overlaps, resolve_overlaps
 from .prediction import find_stale, predict
-from .records import CRUSHED, FREE, NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
+from .records import (
+    CRUSHED,
+    FREE,
+    NOTHING,
+    PLANNED,
+    UNPLANNED,
+    Block,
+    Hit,
+    Hits,
+    Indices,
+    Motions,
+)
 from .tournament import start_tournament
 from .view import (
     WorldView,
@@ -36,79 +49,93 @@ from .view import (
 
 # What `step_worlds` returns if a number is not finite.
 INVALID = -(1 << 62)
+# Where the worlds' blocks begin in a call, and the numbers of each world.
+CALL_START, CALL_BLOCKS = 5, 6
 
 
-def call_of(states: Blocks, insides: Blocks, workspace: Block, hits: Hits) -> npt.NDArray[np.int64]:
-    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [9].
+def call_of(
+    blocks: Sequence[tuple[Block, Block, Block]], hits: Hits, last: Indices | None
+) -> npt.NDArray[np.int64]:
+    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [CALL_START + ...].
 
     The arrays must live as long as it is used.
 
     Args:
-        states, insides: uint8 [worlds, bytes], contiguous; workspace: uint8 [bytes]; see `records`.
+        blocks: of each world: its state, what is inside, and the workspace; each uint8 [bytes].
         hits: the buffer, `Hit` [room].
+        last: the same for other arrays, if a step goes on.
     """
-    return np.array(
-        [
-            *(states.ctypes.data, *states.shape),
-            *(insides.ctypes.data, insides.shape[1]),
-            *(workspace.ctypes.data, len(workspace)),
-            *(hits.ctypes.data, len(hits)),
-        ],
-        np.int64,
-    )
+    at = [0, 0] if last is None else last[1:3].tolist()
+    call = [len(blocks), *at, hits.ctypes.data, len(hits)]
+    for block in itertools.chain.from_iterable(blocks):
+        call += (block.ctypes.data, len(block))
+    return np.array(call, np.int64)
+
+
+@accessor
+def _block_at(call: Indices, place: int) -> Block:
+    """Return the block whose address and length are at a place."""
+    return array_at(call[place], (call[place + 1],), BYTE)
 
 
 @kernel
 def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
     """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
 
-    If the buffer or a block of what is inside is full, it stops early and returns -1 - count. Call
-    it again with larger ones that hold the same, and it continues. It returns `INVALID` if a
-    position or velocity of a world is not finite or beyond `FARTHEST`, or has become so, or its
-    time.
+    If the buffer or a block of what is inside is full, it stops early and returns -1 - count; the
+    second item of ``call`` is the world. Call it again with larger ones that hold the same, and it
+    continues. It returns `INVALID` if a position or velocity of a world is not finite or beyond
+    `FARTHEST`, or has become so, or its time.
 
     Args:
-        call: where the worlds are, see `call_of`. Each array that Python passes to a kernel takes a
-            tenth of a microsecond, and so this is only one.
+        call: where the worlds are, see `call_of`, and how far they are. Each array that Python
+            passes to a kernel takes a tenth of a microsecond, and so this is only one.
         count: of the `Hit` records that are in the buffer already.
         dt, steps: see above.
     """
-    states = array_at(call[0], (call[1], call[2]), BYTE)
-    insides = array_at(call[3], (call[1], call[4]), BYTE)
-    workspace = array_at(call[5], (call[6],), BYTE)
-    hits = array_at(call[7], (call[8],), Hit)
-    for world_index in range(states.shape[0]):
-        world = open_world(states[world_index], insides[world_index], workspace)
-        progress = progress_of(world)
-        if world_index < progress.world:
-            continue
-        progress.world = world_index
-        progress.full = 0
-        while progress.step < steps:
-            if progress.running == 0:
-                if not has_room(world, hits, count):
-                    return -1 - count
-                count = begin_step(world, hits, count, world_index, dt)
-            if count == INVALID:
-                progress.step = 0
-                progress.world = 0
-                return INVALID
-            progress.running = 1
-            if header_of(world).continuous:
-                count = run_events(world, hits, count, world_index)
-            else:
-                count = resolve_overlaps(world, hits, count, world_index)
-            count = finish_step(world, hits, count, world_index)
-            if progress.full:
+    hits = array_at(call[3], (call[4],), Hit)
+    while call[1] < call[0]:
+        place = CALL_START + CALL_BLOCKS * call[1]
+        state, inside = _block_at(call, place), _block_at(call, place + 2)
+        count = _step_world(
+            open_world(state, inside, _block_at(call, place + 4)), call, hits, count, dt, steps
+        )
+        if count == INVALID:
+            call[1] = call[2] = 0
+        if count < 0:
+            return count
+        call[1] += 1
+        call[2] = 0
+    call[1] = 0
+    return count
+
+
+@kernel
+def _step_world(
+    world: WorldView, call: Indices, hits: Hits, count: int, dt: float, steps: int
+) -> int:
+    """Step one world, from the step on that the call says; return as `step_worlds` does."""
+    progress, world_index = progress_of(world), call[1]
+    progress.full = 0
+    while call[2] < steps:
+        if progress.running == 0:
+            if not has_room(world, hits, count):
                 return -1 - count
-            progress.running = 0
-            progress.step += 1
-            if count == INVALID:
-                progress.step = 0
-                progress.world = 0
-                return INVALID
-        progress.step = 0
-        progress.world = 0
+            count = begin_step(world, hits, count, world_index, dt)
+        if count == INVALID:
+            return INVALID
+        progress.running = 1
+        if header_of(world).continuous:
+            count = run_events(world, hits, count, world_index)
+        else:
+            count = resolve_overlaps(world, hits, count, world_index)
+        count = finish_step(world, hits, count, world_index)
+        if progress.full:
+            return -1 - count
+        progress.running = 0
+        call[2] += 1
+        if count == INVALID:
+            return INVALID
     return count
 
 
@@ -128,7 +155,7 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     progress.inert = 0
     progress.hits = 0
     is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
-    if is_calm and clock.planned:
+    if is_calm and clock.planned == PLANNED:
         return count
     if not _are_near(shown_of(world)):
         return INVALID
@@ -136,14 +163,15 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     if header_of(world).sensors > 0:
         count = leave_placed(world, hits, count, world_index)
     if header_of(world).continuous:
-        _plan(world, clock.planned == 0)
+        _plan(world, clock.planned != PLANNED)
         if progress.touching and relax_overlaps(world):
             _plan(world, False)
-        clock.planned = 1
+        clock.planned = PLANNED
         _end_freshness(world)
     else:
-        progress.next_slot = 0
+        progress.next_body = 0
         progress.next_near = 0
+        put_in_order(world)
         _move_all(world)
         fit_all(world, progress.end, progress.end_low)
     return count
@@ -217,13 +245,13 @@ def _plan(world: WorldView, anew: bool) -> None:
     for slot in range(motions.shape[0]):
         fresh += motions[slot].fresh
     if anew or 2 * fresh > motions.shape[0]:
-        _plan_all(world)
+        plan_all(world)
     else:
         _plan_fresh(world)
 
 
 @kernel
-def _plan_all(world: WorldView) -> None:
+def plan_all(world: WorldView) -> None:
     """Make all boxes and all plans."""
     clock = clock_of(world)
     plans = plans_of(world)
@@ -289,6 +317,6 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         total += abs(x) + abs(y) + abs(vx) + abs(vy)
     clock.time, clock.time_low = end, end_low
     if not total <= FARTHEST and not _are_near(shown):
-        clock.planned = 0
+        clock.planned = UNPLANNED
         return INVALID
     return count

@@ -14,7 +14,7 @@ class RayHit(NamedTuple):
     """What a ray meets first.
 
     Attributes:
-        body: its index.
+        body: its handle.
         fraction: of the ray, from 0 at its start (also if it starts inside the body) to 1.
         point: where the ray, or the centre of the disc that is cast, is then.
         normal: unit vector out of the body.
@@ -30,7 +30,8 @@ class RayHits(NamedTuple):
     """What many rays meet first, see `RayHit`.
 
     Attributes:
-        bodies: int64 [n]; -1 for a ray that meets none, whose other values are inf and nan.
+        bodies: their handles, int64 [n]; -1 for a ray that meets none, whose other values are inf
+            and nan.
         fractions: float64 [n].
         points: float64 [n, 2].
         normals: float64 [n, 2].

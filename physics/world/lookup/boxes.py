@@ -8,15 +8,20 @@ It has no influence on any result.
 """
 
 import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
 from ...tolerances import TOUCH
 from ..courses import place_at
-from ..records import Block, PlanRecord
+from ..records import FEW_MOVING, ON, PLANNED, Block, PlanRecord
 from ..view import (
     WorldView,
     clock_of,
+    entries_of,
     grid_of,
     header_of,
     motions_of,
@@ -53,14 +58,24 @@ FAR = 1e-9
 ROUNDING = 4.0 * TOUCH
 
 
-def typical_margin(typical: float, spacing: float) -> float:
+def spacing(traits: npt.NDArray[Any]) -> float:
+    """Return how far bodies are apart, about where half of them are; 0 for a few or in a row."""
+    if len(traits) < FEW_MOVING:
+        return 0.0
+    positions = np.column_stack([traits["home_x"], traits["home_y"]])
+    low, high = np.quantile(positions, (0.25, 0.75), axis=0)
+    width, height = 2.0 * (high - low)
+    return float(np.sqrt(width * height / len(positions)))
+
+
+def typical_margin(typical: float, apart: float) -> float:
     """Return the margin of the first box of a body of typical size.
 
     Args:
         typical: the size.
-        spacing: of the bodies, on average.
+        apart: how far the bodies are from each other.
     """
-    return typical * max(TYPICAL_SHARE, min(MOST_SHARE, SPACING_SHARE * spacing / typical))
+    return typical * max(TYPICAL_SHARE, min(MOST_SHARE, SPACING_SHARE * apart / typical))
 
 
 def typical_width(typical: float, margin: float) -> float:
@@ -181,7 +196,7 @@ def fit_shown(world: WorldView) -> None:
         return
     if grid_of(world).ready == 0:
         fit_all(world, clock.time, clock.time_low)
-    if clock.planned:
+    if clock.planned == PLANNED:
         return
     shown = shown_of(world)
     for slot in range(shown.shape[0]):
@@ -218,19 +233,25 @@ def _time_to_pass(offset: float, velocity: float, margin: float) -> float:
 
 
 @kernel
-def enter_static(workspace: Block) -> None:
-    """Put all static bodies that have bounds into their tree."""
+def enter_static(world: WorldView, body: int) -> None:
+    """Put a static body that has bounds into the tree."""
+    trait, node = traits_of(world)[body], static_nodes_of(world)[body]
+    shape = shapes_of(world)[trait.collider]
+    room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
+    node.lower_x = (trait.home_x + shape.lower_x) - room
+    node.lower_y = (trait.home_y + shape.lower_y) - room
+    node.upper_x = (trait.home_x + shape.upper_x) + room
+    node.upper_y = (trait.home_y + shape.upper_y) + room
+    insert_leaf(static_tree_of(world), static_nodes_of(world), body)
+
+
+@kernel
+def enter_all_static(workspace: Block) -> None:
+    """Put all static bodies that have bounds into their tree, in order."""
     world = open_world(workspace, workspace, workspace)
-    nodes, traits, shapes = static_nodes_of(world), traits_of(world), shapes_of(world)
-    clear_tree(static_tree_of(world), nodes)
+    traits, entries = traits_of(world), entries_of(world)
+    clear_tree(static_tree_of(world), static_nodes_of(world))
     for body in range(traits.shape[0]):
         trait = traits[body]
-        if trait.slot != NO_ONE or trait.boundless:
-            continue
-        shape, node = shapes[trait.collider], nodes[body]
-        room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
-        node.lower_x = (trait.home_x + shape.lower_x) - room
-        node.lower_y = (trait.home_y + shape.lower_y) - room
-        node.upper_x = (trait.home_x + shape.upper_x) + room
-        node.upper_y = (trait.home_y + shape.upper_y) + room
-        insert_leaf(static_tree_of(world), nodes, body)
+        if entries[body].state == ON and trait.slot == NO_ONE and not trait.boundless:
+            enter_static(world, body)

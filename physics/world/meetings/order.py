@@ -30,16 +30,16 @@ def sort_group(world: WorldView) -> None:
 
 @kernel
 def _sort_members(world: WorldView) -> None:
-    """Let the members join again, in the order of their slots."""
-    progress, members, slots = progress_of(world), members_of(world), stale_of(world)
-    count = progress.members
+    """Let the members join again, in the order of their bodies."""
+    progress, members, bodies = progress_of(world), members_of(world), stale_of(world)
+    traits, count = traits_of(world), progress.members
     for index in range(count):
-        slots[index] = traits_of(world)[members[index].body].slot
-        places_of(world)[slots[index]] = 0
-    sort_items(slots, count)
+        bodies[index] = members[index].body
+        places_of(world)[traits[bodies[index]].slot] = 0
+    sort_items(bodies, count)
     progress.members = 0
     for index in range(count):
-        member = members[add_member(world, slots[index])]
+        member = members[add_member(world, traits[bodies[index]].slot)]
         # All have been tested with the velocities that they have.
         member.seen = 1
         member.seen_vx, member.seen_vy = member.vx, member.vy

@@ -67,9 +67,11 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
     """An edit gave up what the step wrote, and a question used the same memory."""
     world = make_world()
     world.add(Body(Particle(1.0), (9.0, 0.0)))
+    third = world.add(Body(Particle(1.0), (99.0, 0.0)))
     calls: list[Callable[[], Any]] = [
         lambda: world.add(Body(Particle(1.0))),
-        lambda: world.remove(0),
+        lambda: world.remove(third),
+        lambda: world.change(0, mass=2.0),
         lambda: world.body(0),
         lambda: world.place(0, (5.0, 5.0)),
         lambda: world.place(1, position=(5.0, 5.0)),
@@ -93,7 +95,7 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
     step_while_others_call(world, calls, attempt, monkeypatch)
     assert len(errors) == len(calls)
     assert all("one thread at a time" in error for error in errors)
-    assert world.positions.tolist() == [[1.0, 0.0], [9.0, 0.0]]
+    assert world.positions.tolist() == [[1.0, 0.0], [9.0, 0.0], [99.0, 0.0]]
     for call in calls:
         call()
 
