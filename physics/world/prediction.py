@@ -156,7 +156,7 @@ def _meeting(
         if progress_of(world).inert and has_reached(world, body, other, HELD):
             # So every meeting has a body that it brings closer to being held.
             return math.inf, 0.0, 0.0, 0.0
-        if time == 0.0:
+        if time == 0.0 and (motion.fresh or (trait.slot >= 0 and motions[trait.slot].fresh)):
             progress_of(world).touching = 1
         if time * closing <= margin and passes_by(world, body, other, closing):
             return math.inf, 0.0, 0.0, 0.0
@@ -320,18 +320,20 @@ def _plan_alone(
 
     It is at (x, y) with the velocity (vx, vy). This returns when, as a time in two numbers.
     """
-    plan = plans_of(world)[slot]
-    duration = time_to_leave(plan, x, y, vx, vy)
+    plan, motion = plans_of(world)[slot], motions_of(world)[slot]
+    duration, end, end_low = time_to_leave(plan, x, y, vx, vy), math.inf, 0.0
     if duration < math.inf:
         plan.kind = LEAVE
-    if plan.rests >= MOST_RESTS:
-        way, speed = short_way(world, moving_of(world)[slot]), abs(vx) + abs(vy)
-        if speed > 0.0 and way < duration * speed:
+        end, end_low = later(now, now_low, duration)
+    speed = abs(vx) + abs(vy)
+    if plan.rests >= MOST_RESTS and speed > 0.0:
+        # From when its course began, whenever this is asked: so no bit depends on its box.
+        duration = short_way(world, moving_of(world)[slot]) / speed
+        look, look_low = later(motion.at, motion.at_low, duration)
+        if is_earlier(look, look_low, end, end_low):
             plan.kind = LOOK
-            duration = way / speed
-    if plan.kind == NOTHING:
-        return math.inf, 0.0
-    return later(now, now_low, duration)
+            end, end_low = look, look_low
+    return end, end_low
 
 
 @kernel

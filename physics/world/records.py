@@ -298,7 +298,7 @@ Progress = record_dtype(
         ("next_body", np.int64),  # place of the next pair of the lecture's procedure
         ("next_near", np.int64),
         ("full", np.int64),  # 1: there was no room for another hit
-        ("touching", np.int64),  # 1: two bodies overlap or touch
+        ("touching", np.int64),  # 1: a fresh body overlaps or touches another one
         ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
         ("hits", np.int64),  # of all bodies in this step
         ("inert", np.int64),  # 1: for a body, the hits before decide how it bounces
@@ -325,6 +325,7 @@ Member = record_dtype(
         ("turn_y", np.float64),
         ("met", np.int64),  # touches, and then hits
         ("rests", np.int64),  # 1: some are inelastic
+        ("due", np.int64),  # 1: it had planned to meet somebody now, or somebody to meet it
     ]
 )
 

@@ -82,7 +82,9 @@ def _join_planned(world: WorldView, a: int, b: int, now: float, now_low: float) 
     for body in (a, b):
         # It needs a new plan, also if this turns out to be no hit.
         if traits[body].slot >= 0:
-            add_member(world, traits[body].slot)
+            index = add_member(world, traits[body].slot)
+            if index >= 0:
+                members_of(world)[index].due = 1
     slot = traits[a].slot
     if slot >= 0 and plans[slot].kind == MEET and plans[slot].partner == b:
         normal_x, normal_y = plans[slot].normal_x, plans[slot].normal_y

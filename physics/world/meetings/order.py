@@ -34,12 +34,14 @@ def _sort_members(world: WorldView) -> None:
     progress, members, bodies = progress_of(world), members_of(world), stale_of(world)
     traits, count = traits_of(world), progress.members
     for index in range(count):
-        bodies[index] = members[index].body
-        places_of(world)[traits[bodies[index]].slot] = 0
+        body = members[index].body
+        bodies[index] = 2 * body + members[index].due
+        places_of(world)[traits[body].slot] = 0
     sort_items(bodies, count)
     progress.members = 0
     for index in range(count):
-        member = members[add_member(world, traits[bodies[index]].slot)]
+        member = members[add_member(world, traits[bodies[index] // 2].slot)]
+        member.due = bodies[index] % 2
         # All have been tested with the velocities that they have.
         member.seen = 1
         member.seen_vx, member.seen_vy = member.vx, member.vy

@@ -56,7 +56,7 @@ def add_member(world: WorldView, slot: int) -> int:
     member.old_vx = member.vx = vx
     member.old_vy = member.vy = vy
     member.seen = 0
-    member.met = member.rests = 0
+    member.met = member.rests = member.due = 0
     return index
 
 
