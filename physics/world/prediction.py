@@ -160,7 +160,16 @@ def _meeting(
             progress_of(world).touching = 1
         if time * closing <= margin and passes_by(world, body, other, closing):
             return math.inf, 0.0, 0.0, 0.0
-    return time, normal_x, normal_y, margin / closing if closing > 0.0 else 0.0
+    # For no longer than a flat angle explains: a plan to leave the box must not come before that.
+    slowest = FLATTEST * _speed_of(world, slot, trait.slot)
+    return time, normal_x, normal_y, margin / max(closing, slowest) if closing > 0.0 else 0.0
+
+
+@kernel
+def _speed_of(world: WorldView, slot: int, other: int) -> float:
+    """Return the speed that two bodies may have had to each other; a static one (-1) has none."""
+    motions = motions_of(world)
+    return float(motions[slot].speed + (motions[other].speed if other >= 0 else 0.0))
 
 
 @kernel
