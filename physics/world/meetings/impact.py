@@ -3,7 +3,8 @@
 import math
 
 from ...kernels import kernel
-from ...pairs.seams import lies_along, time_at_end
+from ...pairs.results import NO_IMPACT
+from ...pairs.seams import lies_along, next_end
 from ...pairs.table import impact_between, may_touch
 from ..lookup.ground import is_ground
 from ..view import WorldView, edges_of, shapes_of, traits_of
@@ -94,25 +95,12 @@ def _meet_seam(
     """
     shapes, edges = shapes_of(world), edges_of(world)
     own, trait = traits_of(world)[a], traits_of(world)[b]
-    shape = shapes[trait.collider]
-    for number in range(shape.first, shape.first + shape.count):
-        for side in range(-1, 2, 2):
-            time, x, y = time_at_end(
-                shapes,
-                edges,
-                own.collider,
-                trait.collider,
-                number,
-                side,
-                dx,
-                dy,
-                ux,
-                uy,
-                margin_x,
-                margin_y,
-            )
-            if time == math.inf or time > duration:
-                continue
-            if is_ground(world, own, b, trait.home_x + x, trait.home_y + y):
-                return time, -edges[number].normal_x, -edges[number].normal_y
-    return math.inf, 0.0, 0.0
+    one, other = own.collider, trait.collider
+    tried, number = 0, 0
+    while number >= 0:
+        tried, number, time, x, y = next_end(
+            shapes, edges, one, other, tried, dx, dy, ux, uy, duration, margin_x, margin_y
+        )
+        if number >= 0 and is_ground(world, own, b, trait.home_x + x, trait.home_y + y):
+            return time, -edges[number].normal_x, -edges[number].normal_y
+    return NO_IMPACT
