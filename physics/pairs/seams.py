@@ -166,8 +166,10 @@ def _time_at_end(
     place = beyond + slide * time
     if place > 2.0 * aside:
         # It comes to the end later, perhaps still within the margin.
+        if slide >= 0.0:
+            return NO_END
         time += place / -slide
-        if slide >= 0.0 or gap - closing * time < -margin:
+        if gap - closing * time < -margin:
             return NO_END
     elif place < -2.0 * (aside + max(slide, 0.0) / closing * margin):
         return NO_END

@@ -29,6 +29,14 @@ def place_at(motion: CourseRecord, now: float, now_low: float) -> tuple[float, f
 
 
 @kernel
+def velocity_of(world: WorldView, slot: int) -> tuple[float, float]:
+    """Return the velocity of the body with this slot; a static body (-1) has none."""
+    if slot < 0:
+        return 0.0, 0.0
+    return motions_of(world)[slot].vx, motions_of(world)[slot].vy
+
+
+@kernel
 def shown_place(world: WorldView, trait: TraitRecord) -> tuple[float, float]:
     """Return the position (x, y) of a body between two steps."""
     if trait.slot < 0:

@@ -164,7 +164,7 @@ def _meeting(
 
 
 @kernel
-def _may_meet(
+def comes_close(
     world: WorldView,
     slot: int,
     trait: TraitRecord,
@@ -242,7 +242,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     for index in range(count):
         other = near[index]
         trait = traits[other]
-        if not _may_meet(world, slot, trait, x, y, now, now_low, left):
+        if not comes_close(world, slot, trait, x, y, now, now_low, left):
             continue
         since, since_low = motion.at, motion.at_low
         if trait.slot >= 0:

@@ -8,6 +8,13 @@ from arkanoid.physics import AxisAlignedRectangle, Body, Collider, Convex, Parti
 
 Rng = np.random.Generator
 KINDS = ("disc", "point", "box", "rectangle", "turned", "polygon", "keel", "spike")
+# Shapes that stand on a corner, and how far down it is.
+CORNERS = (
+    (Particle(0), 0.0),
+    (Convex([(0, -1), (0.1, 1), (-0.1, 1)]), 1.0),
+    (Convex([(0, -0.5), (0.4, 0), (0, 0.5), (-0.4, 0)]), 0.5),
+    (Rectangle(0.5, 0.5, math.pi / 4), 0.5 * 0.5**0.5),
+)
 FORMS = ("box", "rectangle", "quarter turn", "convex", "vertices")
 
 

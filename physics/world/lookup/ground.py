@@ -3,7 +3,7 @@
 from ...kernels import kernel
 from ...pairs.seams import covers
 from ...shapes.records import Edges, Shapes
-from ..courses import shown_place
+from ..courses import place_at, shown_place, velocity_of
 from ..records import TraitRecord
 from ..view import (
     WorldView,
@@ -13,6 +13,7 @@ from ..view import (
     grid_of,
     header_of,
     heads_of,
+    motions_of,
     moving_of,
     near_of,
     shapes_of,
@@ -28,6 +29,58 @@ from .tree import NO_ONE
 
 @kernel
 def is_ground(world: WorldView, own: TraitRecord, other: int, x: float, y: float) -> bool:
+    """Return whether a ground goes on in another body, for a body with these traits.
+
+    Args:
+        world, own: see above.
+        other: a body of the ground, without mass.
+        x, y: a place, relative to it.
+    """
+    trait = traits_of(world)[other]
+    if trait.slot < 0:
+        return _is_static_at(world, own, other, trait.home_x + x, trait.home_y + y)
+    motion = motions_of(world)[trait.slot]
+    stands = motion.vx == 0.0 and motion.vy == 0.0
+    if stands and _is_static_at(world, own, other, motion.x + x, motion.y + y):
+        return True
+    return _goes_along(world, own, other, x, y)
+
+
+@kernel
+def move_as_one(world: WorldView, a: int, b: int) -> bool:
+    """Return whether two bodies have no mass, and one velocity: they may be one ground."""
+    one, other = traits_of(world)[a], traits_of(world)[b]
+    if one.inverse_mass > 0.0 or other.inverse_mass > 0.0:
+        return False
+    vx, vy = velocity_of(world, one.slot)
+    their_vx, their_vy = velocity_of(world, other.slot)
+    return bool(vx == their_vx and vy == their_vy)
+
+
+@kernel
+def _goes_along(world: WorldView, own: TraitRecord, other: int, x: float, y: float) -> bool:
+    """Return whether a kinematic body that moves with another one covers a place beside it.
+
+    It looks at all moving bodies: this is asked so seldom that it need not know where they are.
+    """
+    traits, motions, moving = traits_of(world), motions_of(world), moving_of(world)
+    motion = motions[traits[other].slot]
+    for slot in range(moving.shape[0]):
+        body = moving[slot]
+        trait = traits[body]
+        if body == other or trait.sensor >= 0 or not move_as_one(world, other, body):
+            continue
+        their_x, their_y = place_at(motions[slot], motion.at, motion.at_low)
+        away_x, away_y = x - (their_x - motion.x), y - (their_y - motion.y)
+        if interacts(own, trait) and covers(
+            shapes_of(world), edges_of(world), trait.collider, away_x, away_y
+        ):
+            return True
+    return False
+
+
+@kernel
+def _is_static_at(world: WorldView, own: TraitRecord, other: int, x: float, y: float) -> bool:
     """Return whether a static body, other than one, covers a place for a body with its traits."""
     boundless = boundless_of(world)
     for index in range(boundless.shape[0]):

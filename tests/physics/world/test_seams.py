@@ -14,12 +14,20 @@ from arkanoid.physics import (
     AxisAlignedRectangle,
     Body,
     Collider,
-    Convex,
     Particle,
-    Rectangle,
     World,
 )
-from helpers.grounds import FORMS, KINDS, Frame, Rng, decimal, drop, random_frame, random_mover
+from helpers.grounds import (
+    CORNERS,
+    FORMS,
+    KINDS,
+    Frame,
+    Rng,
+    decimal,
+    drop,
+    random_frame,
+    random_mover,
+)
 
 UNIT_ROUNDOFF = 2.0**-53
 
@@ -139,14 +147,6 @@ def test_what_lands_on_tiles_bounces_as_off_one_wall_at_length(
     kind: str, seed: int, far: float
 ) -> None:
     check_landings(seed, kind, 1000, far)
-
-
-CORNERS = (
-    (Particle(0), 0.0),
-    (Convex([(0, -1), (0.1, 1), (-0.1, 1)]), 1.0),
-    (Convex([(0, -0.5), (0.4, 0), (0, 0.5), (-0.4, 0)]), 0.5),
-    (Rectangle(0.5, 0.5, math.pi / 4), 0.5 * 0.5**0.5),
-)
 
 
 @pytest.mark.parametrize(("shape", "reach"), CORNERS)
