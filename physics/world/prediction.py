@@ -34,6 +34,8 @@ from .view import (
     winners_of,
 )
 
+# This is added to the number of a pair that does not bounce.
+WITH_SENSOR = 1 << 62
 # What is far from meeting a body is sorted out with this room, a fraction of the coordinates, and
 # the same fraction of the time.
 SPARE = 1e-9
@@ -71,10 +73,22 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     _find_event(world, slot, now, now_low, only_later)
     body = moving_of(world)[slot]
     partner = plan.partner if plan.kind == MEET else body
-    plan.pair = (min(body, partner) << INDEX_BITS) | max(body, partner)
+    plan.pair = _pair_of(world, body, partner)
     if plan.kind == MEET:
         join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
+
+
+@kernel
+def _pair_of(world: WorldView, a: int, b: int) -> int:
+    """Return the number of a pair of bodies. At one time, the pair with the lowest comes first.
+
+    What bounces comes before what a sensor notices: a body that is turned away where the sensor
+    begins does not enter it.
+    """
+    traits = traits_of(world)
+    pair = (min(a, b) << INDEX_BITS) | max(a, b)
+    return pair if traits[a].sensor < 0 and traits[b].sensor < 0 else pair + WITH_SENSOR
 
 
 @kernel
@@ -173,7 +187,7 @@ def _speed_of(world: WorldView, slot: int, other: int) -> float:
 
 
 @kernel
-def _may_meet(
+def comes_close(
     world: WorldView,
     slot: int,
     trait: TraitRecord,
@@ -251,7 +265,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     for index in range(count):
         other = near[index]
         trait = traits[other]
-        if not _may_meet(world, slot, trait, x, y, now, now_low, left):
+        if not comes_close(world, slot, trait, x, y, now, now_low, left):
             continue
         since, since_low = motion.at, motion.at_low
         if trait.slot >= 0:
@@ -274,7 +288,9 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             begin, begin_low = later(now, now_low, time)
         wait = elapsed(begin, begin_low, best, best_low)
         # At the same time as the best so far: then the later one is touched already.
-        is_tied = plan.kind == MEET and -plan.slack <= wait <= slack
+        pair = _pair_of(world, body, other)
+        best_pair = _pair_of(world, body, plan.partner) if plan.kind == MEET else WITH_SENSOR
+        is_tied = max(pair, best_pair) < WITH_SENSOR and -plan.slack <= wait <= slack
         are_static = trait.slot < 0 and traits[plan.partner].slot < 0
         if is_tied and (wait == 0.0 or are_static):
             is_first = is_straighter(
@@ -297,7 +313,8 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
                 plan.slack += wait
         else:
             # At the same time, a meeting comes before what a body does alone.
-            is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)
+            is_before = plan.kind != MEET or pair < best_pair
+            is_first = wait < 0.0 or (wait == 0.0 and is_before)
         if is_tied:
             plan.tied = 1
         elif is_first:

@@ -94,7 +94,7 @@ class Questions:
 
     @alone
     def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
-        """Return the handles of the bodies that contain a point."""
+        """Return the handles of the bodies that contain a point; on a border it is in no body."""
         return self._overlapping(POINT, vector("point", point), mask)
 
     @alone
@@ -116,7 +116,8 @@ class Questions:
 
         A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
         a side does not. At a corner the normal points against the ray, but is turned no further
-        than the normals of the corner's sides.
+        than the normals of the corner's sides. A ray along the border of two polygons, or half-
+        planes, is inside of both together: it meets them where the border begins.
         """
         ray = new_ray(*vector("start", start), *vector("end", end))
         self._cast(ray, radius, mask)

@@ -44,6 +44,11 @@ NEW = -1  # there are none yet: all bodies are fresh
 UNPLANNED = 0  # they have to be made
 PLANNED = 1  # they hold, but for fresh bodies and those that users moved
 
+# Whether there are fresh bodies, see `Course` (`Clock.fresh`).
+OLD = 0  # none
+FRESH = 1
+GROUND_GONE = 2  # and one has gone that may have been a part of a moving ground
+
 # Whether an index has a body (`Entry.state`).
 UNUSED = 0  # none
 ON = 1
@@ -63,7 +68,7 @@ Clock = record_dtype(
         ("time_low", np.float64),
         ("capped", np.int64),  # how often a body used up its hits of a step, or had no room
         ("planned", np.int64),  # NEW, UNPLANNED or PLANNED
-        ("fresh", np.int64),  # 1: there are fresh bodies, see `Course`
+        ("fresh", np.int64),  # OLD, FRESH or GROUND_GONE
     ]
 )
 

@@ -17,12 +17,16 @@ from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import run_events
 from .lookup.boxes import first_margin, fit_all, fit_here
 from .lookup.tree import NO_ONE
+from .meetings.grounds import find_on_grounds, is_kinematic, plan_beside
 from .overlaps import put_in_order, relax_overlaps, resolve_overlaps
 from .prediction import find_stale, predict
 from .records import (
     CRUSHED,
     FREE,
+    FRESH,
+    GROUND_GONE,
     NOTHING,
+    OLD,
     PLANNED,
     UNPLANNED,
     Block,
@@ -154,7 +158,7 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     progress.crowded = 0
     progress.inert = 0
     progress.hits = 0
-    is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
+    is_calm = clock.fresh == OLD and _are_equal(shown_of(world), shown_after_step_of(world))
     if is_calm and clock.planned == PLANNED:
         return count
     if not _are_near(shown_of(world)):
@@ -191,7 +195,7 @@ def _adopt_shown(world: WorldView) -> None:
             motion.at, motion.at_low = clock.time, clock.time_low
             motion.speed = abs(seen.vx) + abs(seen.vy)
             motion.fresh = 1
-            clock.fresh = 1
+            clock.fresh = max(clock.fresh, FRESH)
 
 
 @kernel
@@ -199,7 +203,7 @@ def _end_freshness(world: WorldView) -> None:
     """Note that the plans of all bodies hold, unless relaxation has left overlaps."""
     motions = motions_of(world)
     if not progress_of(world).crowded:
-        clock_of(world).fresh = 0
+        clock_of(world).fresh = OLD
         for slot in range(motions.shape[0]):
             motions[slot].fresh = 0
 
@@ -271,17 +275,24 @@ def plan_all(world: WorldView) -> None:
 def _plan_fresh(world: WorldView) -> None:
     """Make the plans of fresh bodies, and of those that planned to meet them."""
     clock, motions, stale = clock_of(world), motions_of(world), stale_of(world)
-    count = 0
+    count, has_new_ground = 0, clock.fresh == GROUND_GONE
     for slot in range(motions.shape[0]):
         if motions[slot].fresh:
             count = find_stale(world, slot, count)
+            has_new_ground = has_new_ground or is_kinematic(world, slot)
             fit_here(world, slot, clock.time, clock.time_low, first_margin(world, slot))
+    if has_new_ground:
+        count = find_on_grounds(world, count)
     for slot in range(motions.shape[0]):
         if motions[slot].fresh:
             predict(world, slot, clock.time, clock.time_low, False)
     for index in range(count):
         if not motions[stale[index]].fresh:
             predict(world, stale[index], clock.time, clock.time_low, False)
+    if has_new_ground:
+        for slot in range(motions.shape[0]):
+            if motions[slot].fresh and is_kinematic(world, slot):
+                plan_beside(world, slot, clock.time, clock.time_low)
 
 
 @kernel
@@ -309,7 +320,7 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         if not header.continuous or plan.stage >= CRUSHED or plan.rests >= MOST_RESTS:
             # What it passes by in this step, it hits in the next one.
             motion.fresh = 1
-            clock.fresh = 1
+            clock.fresh = max(clock.fresh, FRESH)
         plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE
         seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy

@@ -10,7 +10,13 @@ from ..lookup.neighbours import interacts
 from ..lookup.tree import NO_ONE, remove_leaf
 from ..meetings.touches import clear_group
 from ..prediction import forget_partner
-from ..records import MEET, PLANNED, UNPLANNED
+from ..records import (
+    FRESH,
+    GROUND_GONE,
+    MEET,
+    PLANNED,
+    UNPLANNED,
+)
 from ..stepping import plan_all
 from ..tournament import replay
 from ..view import (
@@ -55,7 +61,7 @@ def is_planned(world: WorldView) -> bool:
 def freshen(world: WorldView, slot: int) -> None:
     """Let a moving body plan again in the next step, which also relaxes its overlaps."""
     motions_of(world)[slot].fresh = 1
-    clock_of(world).fresh = 1
+    clock_of(world).fresh = max(clock_of(world).fresh, FRESH)
 
 
 @kernel
@@ -70,6 +76,8 @@ def take_out(world: WorldView, body: int) -> None:
             remove_leaf(static_tree_of(world), static_nodes_of(world), body)
         return
     freshen(world, trait.slot)
+    if trait.inverse_mass == 0.0 and trait.sensor < 0:
+        clock_of(world).fresh = GROUND_GONE
     if not is_planned(world):
         return
     if trait.boundless:

@@ -7,7 +7,16 @@ import numpy.typing as npt
 
 from ...tolerances import FARTHEST
 from ..lookup.tree import NO_ONE
-from ..records import END, INDEX_MASK, OFF, ON, UNPLANNED, UNUSED
+from ..records import (
+    END,
+    GROUND_GONE,
+    INDEX_MASK,
+    OFF,
+    OLD,
+    ON,
+    UNPLANNED,
+    UNUSED,
+)
 from ..setup import have_bounds
 from .edits import LAST_HANDLE
 
@@ -37,7 +46,7 @@ def check_clocks(clocks: npt.NDArray[Any]) -> None:
         np.isfinite(clocks["time"]) & (clocks["time"] + clocks["time_low"] == clocks["time"]),
         (clocks["capped"] >= 0) & (clocks["capped"] < _MANY),
         clocks["planned"] == UNPLANNED,
-        (clocks["fresh"] == 0) | (clocks["fresh"] == 1),
+        (clocks["fresh"] >= OLD) & (clocks["fresh"] <= GROUND_GONE),
     )
 
 

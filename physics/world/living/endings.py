@@ -5,7 +5,7 @@ from ..events import write_event
 from ..lookup.inside import take_outside
 from ..lookup.neighbours import interacts
 from ..lookup.tree import NO_ONE
-from ..records import END, Hits
+from ..records import END, FRESH, Hits
 from ..view import WorldView, clock_of, first_inside_of, header_of, pairs_of, traits_of
 from .slots import place_of
 
@@ -46,7 +46,7 @@ def _notices(world: WorldView, sensor: int, guest: int) -> bool:
 @kernel
 def note_moved(world: WorldView, body: int) -> None:
     """Note that a body without a plan was placed elsewhere: the next step asks whom it contains."""
-    clock_of(world).fresh = 1
+    clock_of(world).fresh = max(clock_of(world).fresh, FRESH)
     if header_of(world).sensors == 0:
         return
     pairs = pairs_of(world)

@@ -11,7 +11,15 @@ from ..lookup.grid import enter_grid, leave_grid
 from ..lookup.neighbours import TOO_MANY
 from ..lookup.tree import NO_ONE
 from ..prediction import forget_partner, join_suitors
-from ..records import FEW_MOVING, FREE, MEET, NOTHING, PLANNED, UNPLANNED
+from ..records import (
+    FEW_MOVING,
+    FREE,
+    FRESH,
+    MEET,
+    NOTHING,
+    PLANNED,
+    UNPLANNED,
+)
 from ..tournament import drop_out, replay, take_part
 from ..view import (
     LINKS,
@@ -58,7 +66,7 @@ def give_slot(world: WorldView, body: int, x: float, y: float, vx: float, vy: fl
     motion.x, motion.y, motion.vx, motion.vy = x, y, vx, vy
     motion.at, motion.at_low = clock.time, clock.time_low
     motion.speed = abs(vx) + abs(vy)
-    motion.fresh = clock.fresh = 1
+    motion.fresh, clock.fresh = 1, max(clock.fresh, FRESH)
     seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
     shown_after_step_of(world)[slot] = seen
     plan = plans_of(world)[slot]

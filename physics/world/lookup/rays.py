@@ -8,6 +8,7 @@ before the next ones. A body's box may reach out of its cell, and so the cells b
 import math
 
 from ...kernels import kernel
+from ...shapes.records import ShapeRecord
 from ..records import BoxRecord, Indices, RayRecord
 from ..view import (
     WorldView,
@@ -33,9 +34,22 @@ def entry(ray: RayRecord, box: BoxRecord) -> float:
 
     It is not after what the ray has met so far. It is never too late, in spite of rounding.
     """
-    room = ray.room + SPARE * (abs(box.lower_x) + abs(box.lower_y))
-    first_x, last_x = _passage(ray.x, ray.way_x, box.lower_x - room, box.upper_x + room)
-    first_y, last_y = _passage(ray.y, ray.way_y, box.lower_y - room, box.upper_y + room)
+    return _entry(ray, box.lower_x, box.lower_y, box.upper_x, box.upper_y)
+
+
+@kernel
+def passes_close(ray: RayRecord, shape: ShapeRecord, x: float, y: float) -> bool:
+    """Return whether a ray enters or grazes the bounding box of a shape at (x, y)."""
+    first = _entry(ray, x + shape.lower_x, y + shape.lower_y, x + shape.upper_x, y + shape.upper_y)
+    return first < math.inf
+
+
+@kernel
+def _entry(ray: RayRecord, lower_x: float, lower_y: float, upper_x: float, upper_y: float) -> float:
+    """Return what `entry` does, of a box that is given by its sides."""
+    room = ray.room + SPARE * (abs(lower_x) + abs(lower_y))
+    first_x, last_x = _passage(ray.x, ray.way_x, lower_x - room, upper_x + room)
+    first_y, last_y = _passage(ray.y, ray.way_y, lower_y - room, upper_y + room)
     first = max(0.0, max(first_x, first_y))
     last = min(limit(ray), min(last_x, last_y))
     return first if first <= last else math.inf

@@ -5,6 +5,7 @@ import math
 from ...kernels import kernel
 from ...pairs.response import bounce_velocities
 from ...tolerances import MOST_AT_ONCE, NO_TURN
+from ..courses import velocity_of
 from ..lookup.overrides import find_override
 from ..records import INERT
 from ..view import (
@@ -17,14 +18,6 @@ from ..view import (
     traits_of,
 )
 from .passing import has_reached, inverse_mass_of
-
-
-@kernel
-def velocity_of(world: WorldView, slot: int) -> tuple[float, float]:
-    """Return the velocity of the body with this slot; a static body (-1) has none."""
-    if slot < 0:
-        return 0.0, 0.0
-    return motions_of(world)[slot].vx, motions_of(world)[slot].vy
 
 
 @kernel
