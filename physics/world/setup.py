@@ -72,9 +72,9 @@ class Setup:
         continuous: with times of impact, not by the lecture's procedure.
 
     Attributes:
-        workspace: uint8 [bytes], see `records`.
-        header: its `Header`.
+        workspace, header: uint8 [bytes], see `records`, and its `Header`.
         users: how many worlds use it.
+        is_tuned, is_checked: whether it suits the bodies, and all of them can be separated.
         colliders: all that any body had, in the order of the table of shapes.
         traits, entries: `Trait` and `Entry` [room].
     """
@@ -94,6 +94,7 @@ class Setup:
 
     def _use(self, room: Room, workspace: ByteArray) -> None:
         """Use another workspace, with this room."""
+        self.is_tuned = self.is_checked = False
         self.room, self.workspace = room, workspace
         self.header: Any = workspace[: Header.itemsize].view(Header)[0]
         self.traits: npt.NDArray[Any] = self.table("traits", Trait, room.bodies)
@@ -306,8 +307,7 @@ def _tables(setup: Setup) -> list[tuple[str, Any, int]]:
 def _sizes_of(shapes: npt.NDArray[Any]) -> FloatArray:
     """Return how far shapes reach from their origin along the axes, float64 [n]."""
     sides = [np.abs(shapes[name]) for name in ("lower_x", "lower_y", "upper_x", "upper_y")]
-    sizes: FloatArray = np.max(sides, axis=0)
-    return sizes
+    return np.asarray(np.max(sides, axis=0))
 
 
 def have_bounds(shapes: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:

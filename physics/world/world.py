@@ -13,13 +13,14 @@ from ..errors import HitLimitWarning
 from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
 from ..shapes.colliders import Collider
-from .living.site import Family, Site, copied
+from .living.site import NO_HITS, Family, Site, copied
 from .living.snapshots import pack, unpack
 from .questions import ALL, Questions, bits
 from .records import ON
 from .setup import Room, Setup
 from .states import Stepper, checked_step
 
+INF = math.inf
 FIRST_ROOM = Room(bodies=8, movers=8, shapes=4, edges=16)  # of a world
 
 
@@ -198,19 +199,23 @@ class World(Questions):
             RuntimeError: another call is in progress.
         """
         # Most steps save this call, and the next but one.
-        if not (type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps == 1):
+        if not (type(dt) is float and 0.0 <= dt < INF and type(steps) is int and steps == 1):
             dt, steps = checked_step(dt, steps)
-        guard = self._alone
+        guard, stepper = self._alone, self._stepper
         if guard.taken:
             guard.refuse()
         guard.taken = True
         try:
-            hits = self._stepper.step(dt, steps)
+            # What `stepper.step` does: to call it would take a sixth of the time of a short step.
+            count = stepper.run(stepper.address, 0, dt, steps)
+            if not count and not stepper.has_pending:
+                return NO_HITS
+            hits = stepper.finish(count, dt, steps)
         finally:
             guard.taken = False
         site = self.site
-        if len(hits) and site.clock["capped"] != site.warned:
-            site.warned = int(site.clock["capped"])
+        if len(hits) and site.capped.item() != site.warned:
+            site.warned = site.capped.item()
             warnings.warn(
                 "a body has no room, or used up the hits of a step (max_hits="
                 f"{self._max_hits}); for the rest of it, it did not bounce. If it is only "

@@ -67,7 +67,8 @@ class Site:
         steppers: all that step this world.
         family: the worlds whose states are in one matrix.
         row, part: see above.
-        warned: how often a body had used up its hits when the user was last warned of it.
+        capped: int64 [1], how often a body had used up its hits.
+        warned: the same when the user was last warned of it.
     """
 
     def __init__(self, setup: Setup, states: ByteArray, row: int, part: int) -> None:
@@ -77,7 +78,6 @@ class Site:
         self.family: Family
         self.warned = 0
         self.pending = NO_HITS
-        self._is_checked = self._is_tuned = False
         self.inside = inside_block(np.zeros((0, 3), np.int64), self.heads(), FEW_PAIRS)
         self.use_state(states[row])
 
@@ -85,7 +85,9 @@ class Site:
         """Use another row of a matrix as the state."""
         self.halt()
         self.state = state
-        self.clock: Any = state[: Clock.itemsize].view(Clock)[0]
+        clocks = state[: Clock.itemsize].view(Clock)
+        self.clock: Any = clocks[0]
+        self.capped: npt.NDArray[np.int64] = clocks["capped"]
         self.motions: FloatArray = self.setup.motion_view(state[None])[0]
 
     def halt(self) -> None:
@@ -134,22 +136,22 @@ class Site:
 
     def forget_check(self) -> None:
         """Let the next `check` look at the bodies again."""
-        self._is_checked = False
+        self.setup.is_checked = False
         self.halt()
 
     def check(self) -> None:
         """Prepare a step; raise an InseparableError if nothing separates bodies that bounce."""
-        if self.clock.planned == NEW and not self._is_tuned:
+        if self.clock.planned == NEW and not self.setup.is_tuned:
             self._tune()
-        if not self._is_checked:
+        if not self.setup.is_checked:
             pair = inseparable_pair(self.setup)
             if pair is not None:
                 raise InseparableError(*(self.body(index) for index in pair))
-            self._is_checked = True
+            self.setup.is_checked = True
 
     def _tune(self) -> None:
         """Let the lookup suit the bodies. Grids that a query has made do not fit then."""
-        self._is_tuned = True
+        self.setup.is_tuned = True
         before = float(self.setup.header.cell)
         self.setup.tune()
         if self.setup.header.cell != before:
@@ -161,12 +163,12 @@ class Site:
 
     def _begin_edit(self) -> Setup:
         """Return the setup, which no other world uses from now on."""
-        self._is_tuned = False
         if self.setup.users > 1:
             own = self.setup.copy()
             self.halt()
             self.setup.users -= 1
             self.setup = own
+        self.setup.is_tuned = False
         return self.setup
 
     def _after_edit(self, is_boundless: bool, ends: npt.NDArray[Any] | None = None) -> None:
