@@ -325,6 +325,9 @@ Member = record_dtype(
         ("turn_y", np.float64),
         ("met", np.int64),  # touches, and then hits
         ("rests", np.int64),  # 1: some are inelastic
+        # The touches of which it is the first one are a list, in order; -1 where it ends.
+        ("first", np.int64),
+        ("last", np.int64),
     ]
 )
 
@@ -333,6 +336,7 @@ Touch = record_dtype(
     [
         ("one", np.int64),  # a member
         ("other", np.int64),  # a member, or -1 for a static body
+        ("next", np.int64),  # in the list of the first member
         ("a", np.int64),  # their bodies
         ("b", np.int64),
         ("normal_x", np.float64),  # from a to b

@@ -26,7 +26,7 @@ from ..records import (
     Motion,
     Plan,
 )
-from ..setup import ByteArray, Setup, inseparable_pair
+from ..setup import ByteArray, Setup
 from .edits import (
     add_body,
     change_body,
@@ -35,6 +35,7 @@ from .edits import (
     place_body,
     remove_body,
 )
+from .separable import inseparable_pair
 
 NO_HITS: npt.NDArray[Any] = np.zeros(0, Hit)
 # What is kept of moving bodies when all else is made again.
@@ -104,27 +105,24 @@ class Site:
     @property
     def living(self) -> npt.NDArray[np.int64]:
         """The indices of the bodies, int64 [n]."""
-        state = self.setup.entries["state"][: int(self.setup.header.bodies)]
-        return np.flatnonzero(state != UNUSED)
+        return np.flatnonzero(self.setup.uses[: int(self.setup.header.bodies)] != UNUSED)
 
-    def places(self, first: int) -> FloatArray:
-        """Return the positions (first = 0) or velocities (2) of all bodies, float64 [n, 2]."""
-        living = self.living
-        traits, entries = self.setup.traits[living], self.setup.entries[living]
-        parts = (traits["home_x"], traits["home_y"], entries["vx"], entries["vy"])
-        places = np.stack(parts[first : first + 2], axis=1)
-        moves = traits["slot"] != NO_ONE
-        places[moves] = self.motions[traits["slot"][moves], first : first + 2]
+    def places(self, indices: npt.NDArray[np.int64], first: int) -> FloatArray:
+        """Return the positions (first = 0) or velocities (2) of bodies, float64 [n, 2]."""
+        setup = self.setup
+        places: FloatArray = (setup.speeds if first else setup.homes)[indices]
+        slots = setup.slots[indices]
+        moves = slots != NO_ONE
+        places[moves] = self.motions[slots[moves], first : first + 2]
         return places
 
     def place_of(self, index: int) -> list[float]:
         """Return x, y, vx, vy of a body."""
-        trait = self.setup.traits[index]
-        if trait["slot"] != NO_ONE:
-            found: list[float] = self.motions[trait["slot"]].tolist()
+        slot = self.setup.slots.item(index)
+        if slot != NO_ONE:
+            found: list[float] = self.motions[slot].tolist()
             return found
-        entry = self.setup.entries[index]
-        return [float(value) for value in (trait["home_x"], trait["home_y"], *entry[["vx", "vy"]])]
+        return [*self.setup.homes[index].tolist(), *self.setup.speeds[index].tolist()]
 
     def body(self, index: int) -> Body:
         """Return a body as it is now."""
@@ -227,10 +225,9 @@ class Site:
 
     def place(self, index: int, motion: list[float]) -> None:
         """Put a body somewhere, with another velocity."""
-        trait = self.setup.traits[index]
-        moves = motion[2] != 0.0 or motion[3] != 0.0
-        if trait["slot"] != NO_ONE and (moves or trait["inverse_mass"] > 0.0):
-            self.motions[trait["slot"]] = motion
+        slot, moves = self.setup.slots.item(index), motion[2] != 0.0 or motion[3] != 0.0
+        if slot != NO_ONE and (moves or self.setup.inverse_masses.item(index) > 0.0):
+            self.motions[slot] = motion
             return
         setup, ends = self._begin_edit(), self._ends()
         if moves and setup.entries[index]["state"] != OFF:
@@ -238,6 +235,15 @@ class Site:
         x, y, vx, vy = motion
         count = place_body(self.state, self.inside, setup.workspace, index, x, y, vx, vy, ends)
         self._after_edit(bool(setup.traits[index]["boundless"]), ends[:count])
+
+    def place_all(self, indices: npt.NDArray[np.int64], motions: FloatArray) -> None:
+        """Do the same for several bodies; motions: float64 [n, 4]."""
+        slots = self.setup.slots[indices]
+        moves = (motions[:, 2:] != 0.0).any(axis=1) | (self.setup.inverse_masses[indices] > 0.0)
+        is_quick = (slots != NO_ONE) & moves
+        self.motions[slots[is_quick]] = motions[is_quick]
+        for index, motion in zip(indices[~is_quick].tolist(), motions[~is_quick], strict=True):
+            self.place(index, motion.tolist())
 
     def change(
         self,
