@@ -281,6 +281,8 @@ Ray = record_dtype(
         ("y", np.float64),
         ("way_x", np.float64),  # to its end
         ("way_y", np.float64),
+        ("inverse_x", np.float64),  # 1 / way_x, but at most 1e300
+        ("inverse_y", np.float64),
         ("room", np.float64),  # how far beside it bodies are met
         ("body", np.int64),  # -1: none
         ("fraction", np.float64),  # of the way
