@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,8 @@ from .queries import find_first, find_overlapping
 from .records import INDEX_MASK, UNUSED
 
 IndexArray = npt.NDArray[np.int64]
+
+Handles: TypeAlias = int | npt.ArrayLike
 
 ALL = -1  # a mask of every category
 POINT = Particle(0.0)
@@ -57,15 +59,15 @@ class Questions:
     def positions(self) -> FloatArray:
         """The positions of all bodies: float64 [n, 2], a read-only copy (see `place`).
 
-        Row i is of the body ``handles[i]``. For a single body, `position` is faster.
+        Row i is of the body ``handles[i]``. For one body, or some, `position` is faster.
         """
-        return _read_only(self.site.places(0))
+        return _read_only(self.site.places(self.site.living, 0))
 
     @property
     @alone
     def velocities(self) -> FloatArray:
         """The velocities of all bodies, as `positions`; of inactive ones, what they keep."""
-        return _read_only(self.site.places(2))
+        return _read_only(self.site.places(self.site.living, 2))
 
     @property
     def time(self) -> float:
@@ -78,14 +80,14 @@ class Questions:
         return int(self.site.clock.capped)
 
     @alone
-    def position(self, handle: int) -> FloatArray:
-        """The position of a body, float64 [2], a copy."""
-        return np.array(self.site.place_of(self._index(handle))[:2])
+    def position(self, handle: Handles) -> FloatArray:
+        """The position of a body, float64 [2], or of several, [n, 2]; a copy."""
+        return self._place_of(handle, 0)
 
     @alone
-    def velocity(self, handle: int) -> FloatArray:
-        """The velocity of a body, float64 [2], a copy."""
-        return np.array(self.site.place_of(self._index(handle))[2:])
+    def velocity(self, handle: Handles) -> FloatArray:
+        """The velocity of a body, as `position`."""
+        return self._place_of(handle, 2)
 
     @alone
     def body(self, handle: int) -> Body:
@@ -195,20 +197,40 @@ class Questions:
         )
         return found[:count]
 
+    def _place_of(self, handle: Handles, first: int) -> FloatArray:
+        """Return the positions (first = 0) or velocities (2) of a body or several."""
+        if type(handle) is int or not np.ndim(handle):
+            return np.array(self.site.place_of(self._index(handle))[first : first + 2])
+        return self.site.places(self._indices(handle), first)
+
     def _index(self, handle: Any) -> int:
         """Check the handle of a body, and return its index."""
-        number = integer("the handle of a body", handle)
+        number = handle if type(handle) is int else integer("the handle of a body", handle)
         index, setup = number & INDEX_MASK, self.site.setup
-        if number >= 0 and index < setup.header.bodies:
-            entry = setup.entries[index]
-            if entry["handle"] == number and entry["state"] != UNUSED:
+        if number >= 0 and index < setup.room.bodies:
+            own = setup.numbers.item(index)
+            if own == number and setup.uses.item(index) != UNUSED:
                 return index
-            if entry["handle"] > number:
+            if own > number:
                 raise NoBodyError(
                     f"body {number} was removed. Forget the handles of bodies that you remove, or "
                     "ask `handle in world` first"
                 )
         raise NoBodyError(f"there is no body {number}, and there never was: see `world.handles`")
+
+    def _indices(self, handles: Any) -> IndexArray:
+        """Check the handles of some bodies, and return their indices, int64 [n]."""
+        numbers, setup = np.asarray(handles), self.site.setup
+        if numbers.ndim != 1 or (len(numbers) and numbers.dtype.kind != "i"):
+            raise TypeError(f"handles must be integers, [n], but are {handles!r}")
+        numbers = numbers.astype(np.int64)
+        indices: IndexArray = numbers & INDEX_MASK
+        known = (numbers >= 0) & (indices < setup.room.bodies)
+        places = np.where(known, indices, 0)
+        known &= (setup.numbers[places] == numbers) & (setup.uses[places] != UNUSED)
+        if not known.all():
+            self._index(int(numbers[~known][0]))
+        return indices
 
 
 def _read_only(array: FloatArray) -> FloatArray:

@@ -286,6 +286,8 @@ Ray = record_dtype(
         ("y", np.float64),
         ("way_x", np.float64),  # to its end
         ("way_y", np.float64),
+        ("inverse_x", np.float64),  # 1 / way_x, but at most 1e300
+        ("inverse_y", np.float64),
         ("room", np.float64),  # how far beside it bodies are met
         ("body", np.int64),  # -1: none
         ("fraction", np.float64),  # of the way
@@ -331,6 +333,9 @@ Member = record_dtype(
         ("met", np.int64),  # touches, and then hits
         ("rests", np.int64),  # 1: some are inelastic
         ("due", np.int64),  # 1: it had planned to meet somebody now, or somebody to meet it
+        # The touches of which it is the first one are a list, in order; -1 where it ends.
+        ("first", np.int64),
+        ("last", np.int64),
     ]
 )
 
@@ -339,6 +344,7 @@ Touch = record_dtype(
     [
         ("one", np.int64),  # a member
         ("other", np.int64),  # a member, or -1 for a static body
+        ("next", np.int64),  # in the list of the first member
         ("a", np.int64),  # their bodies
         ("b", np.int64),
         ("normal_x", np.float64),  # from a to b

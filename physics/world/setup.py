@@ -1,6 +1,5 @@
 """The workspace that worlds are stepped in: tables with room to grow, one after the other."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,7 +7,6 @@ import numpy.typing as npt
 
 from ..body import FloatArray
 from ..kernels.layouts import aligned_bytes, in_lines
-from ..pairs.table import contact_between
 from ..shapes.colliders import Collider
 from ..shapes.records import Edge, Shape
 from ..shapes.table import shape_table
@@ -72,11 +70,13 @@ class Setup:
         continuous: with times of impact, not by the lecture's procedure.
 
     Attributes:
-        workspace: uint8 [bytes], see `records`.
-        header: its `Header`.
+        workspace, header: uint8 [bytes], see `records`, and its `Header`.
         users: how many worlds use it.
+        is_tuned, is_checked: whether it suits the bodies, and all of them can be separated.
         colliders: all that any body had, in the order of the table of shapes.
         traits, entries: `Trait` and `Entry` [room].
+        slots, inverse_masses, homes: of the traits, in columns, as they are asked fastest.
+        numbers, uses, speeds: of the entries, the handles, the states and (vx, vy).
     """
 
     def __init__(self, room: Room, max_hits: int, continuous: bool) -> None:
@@ -94,10 +94,14 @@ class Setup:
 
     def _use(self, room: Room, workspace: ByteArray) -> None:
         """Use another workspace, with this room."""
+        self.is_tuned = self.is_checked = False
         self.room, self.workspace = room, workspace
         self.header: Any = workspace[: Header.itemsize].view(Header)[0]
         self.traits: npt.NDArray[Any] = self.table("traits", Trait, room.bodies)
         self.entries: npt.NDArray[Any] = self.table("entries", Entry, room.bodies)
+        self.slots, self.inverse_masses = self.traits["slot"], self.traits["inverse_mass"]
+        self.numbers, self.uses = self.entries["handle"], self.entries["state"]
+        self.homes, self.speeds = _pairs(self.traits, "home_x"), _pairs(self.entries, "vx")
 
     def table(self, name: str, dtype: Any, count: int) -> npt.NDArray[Any]:
         """Return a view of the first items of a table, by its name in the header."""
@@ -287,6 +291,12 @@ class Setup:
         return state[start : start + dtype.itemsize * int(self.header.movers)].view(dtype)
 
 
+def _pairs(records: npt.NDArray[Any], name: str) -> FloatArray:
+    """Return a view of a field of records and the one after it, float64 [n, 2]."""
+    first = records.dtype.fields[name][1]
+    return np.ndarray((len(records), 2), np.float64, records, first, (records.itemsize, 8))
+
+
 def _tables(setup: Setup) -> list[tuple[str, Any, int]]:
     """Return (name, dtype, used items) of the tables that a larger workspace takes over."""
     header, index = setup.header, np.dtype(np.int64)
@@ -306,32 +316,12 @@ def _tables(setup: Setup) -> list[tuple[str, Any, int]]:
 def _sizes_of(shapes: npt.NDArray[Any]) -> FloatArray:
     """Return how far shapes reach from their origin along the axes, float64 [n]."""
     sides = [np.abs(shapes[name]) for name in ("lower_x", "lower_y", "upper_x", "upper_y")]
-    sizes: FloatArray = np.max(sides, axis=0)
-    return sizes
+    return np.asarray(np.max(sides, axis=0))
 
 
 def have_bounds(shapes: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
     """Return which shapes have bounds, bool [n]."""
     return np.isfinite(_sizes_of(shapes))
-
-
-def inseparable_pair(setup: Setup) -> tuple[int, int] | None:
-    """Return two bodies that have to bounce and that no finite translation separates, or None."""
-    bodies = int(setup.header.bodies)
-    traits, shapes = setup.traits[:bodies], setup.shapes
-    is_open = ~have_bounds(shapes)[traits["collider"]] & (traits["sensor"] < 0)
-    open_ones = np.flatnonzero(is_open & (setup.entries["state"][:bodies] == ON))
-    for a in open_ones[traits["slot"][open_ones] >= 0]:
-        for b in open_ones:
-            one, other = traits[a], traits[b]
-            meets = one["category"] & other["mask"] and other["category"] & one["mask"]
-            if a == b or not meets or one["inverse_mass"] + other["inverse_mass"] == 0.0:
-                continue
-            pair = int(one["collider"]), int(other["collider"])
-            depth = contact_between(shapes, _at_least_one(setup.edges), *pair, 0.0, 0.0)[3]
-            if depth == math.inf:
-                return int(a), int(b)
-    return None
 
 
 def _new_workspace(room: Room) -> ByteArray:
@@ -393,8 +383,3 @@ def _plan_state(header: npt.NDArray[Any], movers: int) -> None:
     for name, size in sizes.items():
         end = in_lines(end + int(size))
         header[name] = end
-
-
-def _at_least_one(edges: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return edges, or one that nobody uses, so that even discs alone give what kernels accept."""
-    return edges if len(edges) else np.zeros(1, Edge)

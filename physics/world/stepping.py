@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..kernels import accessor, kernel
-from ..kernels.borrowed import BYTE
+from ..kernels import accessor, inlined, kernel
+from ..kernels.borrowed import BYTE, INDEX
 from ..kernels.portable.addresses import array_at
 from ..tolerances import FARTHEST, MOST_RESTS
 from .clock_time import later
@@ -70,10 +70,17 @@ def call_of(
         last: the same for other arrays, if a step goes on.
     """
     at = [0, 0] if last is None else last[1:3].tolist()
-    call = [len(blocks), *at, hits.ctypes.data, len(hits)]
+    call = [len(blocks), *at, 0, 0]
     for block in itertools.chain.from_iterable(blocks):
         call += (block.ctypes.data, len(block))
-    return np.array(call, np.int64)
+    numbers = np.array(call, np.int64)
+    use_hits(numbers, hits)
+    return numbers
+
+
+def use_hits(call: Indices, hits: Hits) -> None:
+    """Let a call write its hits into another buffer, `Hit` [room], which holds the same."""
+    call[3:CALL_START] = hits.ctypes.data, len(hits)
 
 
 @accessor
@@ -82,46 +89,15 @@ def _block_at(call: Indices, place: int) -> Block:
     return array_at(call[place], (call[place + 1],), BYTE)
 
 
-@kernel
-def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
-    """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
-
-    If the buffer or a block of what is inside is full, it stops early and returns -1 - count; the
-    second item of ``call`` is the world. Call it again with larger ones that hold the same, and it
-    continues. It returns `INVALID` if a position or velocity of a world is not finite or beyond
-    `FARTHEST`, or has become so, or its time.
-
-    Args:
-        call: where the worlds are, see `call_of`, and how far they are. Each array that Python
-            passes to a kernel takes a tenth of a microsecond, and so this is only one.
-        count: of the `Hit` records that are in the buffer already.
-        dt, steps: see above.
-    """
-    hits = array_at(call[3], (call[4],), Hit)
-    while call[1] < call[0]:
-        place = CALL_START + CALL_BLOCKS * call[1]
-        state, inside = _block_at(call, place), _block_at(call, place + 2)
-        count = _step_world(
-            open_world(state, inside, _block_at(call, place + 4)), call, hits, count, dt, steps
-        )
-        if count == INVALID:
-            call[1] = call[2] = 0
-        if count < 0:
-            return count
-        call[1] += 1
-        call[2] = 0
-    call[1] = 0
-    return count
-
-
-@kernel
+@inlined
 def _step_world(
     world: WorldView, call: Indices, hits: Hits, count: int, dt: float, steps: int
 ) -> int:
     """Step one world, from the step on that the call says; return as `step_worlds` does."""
-    progress, world_index = progress_of(world), call[1]
+    progress, world_index, done = progress_of(world), call[1], call[2]
     progress.full = 0
-    while call[2] < steps:
+    while done < steps:
+        call[2] = done
         if progress.running == 0:
             if not has_room(world, hits, count):
                 return -1 - count
@@ -137,9 +113,43 @@ def _step_world(
         if progress.full:
             return -1 - count
         progress.running = 0
-        call[2] += 1
+        done += 1
         if count == INVALID:
             return INVALID
+    return count
+
+
+@kernel
+def step_worlds(address: int, count: int, dt: float, steps: int) -> int:
+    """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
+
+    If the buffer or a block of what is inside is full, it stops early and returns -1 - count; the
+    second item of the call is the world. Call it again with larger ones that hold the same, and it
+    continues. It returns `INVALID` if a position or velocity of a world is not finite or beyond
+    `FARTHEST`, or has become so, or its time.
+
+    Args:
+        address: where a call begins, see `call_of`: where the worlds are, and how far they are.
+            (Each array that Python passes to a kernel would take up to a tenth of a microsecond.)
+        count: of the `Hit` records that are in the buffer already.
+        dt, steps: see above.
+    """
+    worlds = array_at(address, (1,), INDEX)[0]
+    call = array_at(address, (CALL_START + CALL_BLOCKS * worlds,), INDEX)
+    hits = array_at(call[3], (call[4],), Hit)
+    while call[1] < call[0]:
+        place = CALL_START + CALL_BLOCKS * call[1]
+        state, inside = _block_at(call, place), _block_at(call, place + 2)
+        count = _step_world(
+            open_world(state, inside, _block_at(call, place + 4)), call, hits, count, dt, steps
+        )
+        if count == INVALID:
+            call[1] = call[2] = 0
+        if count < 0:
+            return count
+        call[1] += 1
+        call[2] = 0
+    call[1] = 0
     return count
 
 

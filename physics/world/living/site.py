@@ -26,7 +26,7 @@ from ..records import (
     Motion,
     Plan,
 )
-from ..setup import ByteArray, Setup, inseparable_pair
+from ..setup import ByteArray, Setup
 from .edits import (
     add_body,
     change_body,
@@ -35,6 +35,7 @@ from .edits import (
     place_body,
     remove_body,
 )
+from .separable import inseparable_pair
 
 NO_HITS: npt.NDArray[Any] = np.zeros(0, Hit)
 # What is kept of moving bodies when all else is made again.
@@ -67,7 +68,8 @@ class Site:
         steppers: all that step this world.
         family: the worlds whose states are in one matrix.
         row, part: see above.
-        warned: how often a body had used up its hits when the user was last warned of it.
+        capped: int64 [1], how often a body had used up its hits.
+        warned: the same when the user was last warned of it.
     """
 
     def __init__(self, setup: Setup, states: ByteArray, row: int, part: int) -> None:
@@ -77,7 +79,6 @@ class Site:
         self.family: Family
         self.warned = 0
         self.pending = NO_HITS
-        self._is_checked = self._is_tuned = False
         self.inside = inside_block(np.zeros((0, 3), np.int64), self.heads(), FEW_PAIRS)
         self.use_state(states[row])
 
@@ -85,7 +86,9 @@ class Site:
         """Use another row of a matrix as the state."""
         self.halt()
         self.state = state
-        self.clock: Any = state[: Clock.itemsize].view(Clock)[0]
+        clocks = state[: Clock.itemsize].view(Clock)
+        self.clock: Any = clocks[0]
+        self.capped: npt.NDArray[np.int64] = clocks["capped"]
         self.motions: FloatArray = self.setup.motion_view(state[None])[0]
 
     def halt(self) -> None:
@@ -102,27 +105,24 @@ class Site:
     @property
     def living(self) -> npt.NDArray[np.int64]:
         """The indices of the bodies, int64 [n]."""
-        state = self.setup.entries["state"][: int(self.setup.header.bodies)]
-        return np.flatnonzero(state != UNUSED)
+        return np.flatnonzero(self.setup.uses[: int(self.setup.header.bodies)] != UNUSED)
 
-    def places(self, first: int) -> FloatArray:
-        """Return the positions (first = 0) or velocities (2) of all bodies, float64 [n, 2]."""
-        living = self.living
-        traits, entries = self.setup.traits[living], self.setup.entries[living]
-        parts = (traits["home_x"], traits["home_y"], entries["vx"], entries["vy"])
-        places = np.stack(parts[first : first + 2], axis=1)
-        moves = traits["slot"] != NO_ONE
-        places[moves] = self.motions[traits["slot"][moves], first : first + 2]
+    def places(self, indices: npt.NDArray[np.int64], first: int) -> FloatArray:
+        """Return the positions (first = 0) or velocities (2) of bodies, float64 [n, 2]."""
+        setup = self.setup
+        places: FloatArray = (setup.speeds if first else setup.homes)[indices]
+        slots = setup.slots[indices]
+        moves = slots != NO_ONE
+        places[moves] = self.motions[slots[moves], first : first + 2]
         return places
 
     def place_of(self, index: int) -> list[float]:
         """Return x, y, vx, vy of a body."""
-        trait = self.setup.traits[index]
-        if trait["slot"] != NO_ONE:
-            found: list[float] = self.motions[trait["slot"]].tolist()
+        slot = self.setup.slots.item(index)
+        if slot != NO_ONE:
+            found: list[float] = self.motions[slot].tolist()
             return found
-        entry = self.setup.entries[index]
-        return [float(value) for value in (trait["home_x"], trait["home_y"], *entry[["vx", "vy"]])]
+        return [*self.setup.homes[index].tolist(), *self.setup.speeds[index].tolist()]
 
     def body(self, index: int) -> Body:
         """Return a body as it is now."""
@@ -134,22 +134,22 @@ class Site:
 
     def forget_check(self) -> None:
         """Let the next `check` look at the bodies again."""
-        self._is_checked = False
+        self.setup.is_checked = False
         self.halt()
 
     def check(self) -> None:
         """Prepare a step; raise an InseparableError if nothing separates bodies that bounce."""
-        if self.clock.planned == NEW and not self._is_tuned:
+        if self.clock.planned == NEW and not self.setup.is_tuned:
             self._tune()
-        if not self._is_checked:
+        if not self.setup.is_checked:
             pair = inseparable_pair(self.setup)
             if pair is not None:
                 raise InseparableError(*(self.body(index) for index in pair))
-            self._is_checked = True
+            self.setup.is_checked = True
 
     def _tune(self) -> None:
         """Let the lookup suit the bodies. Grids that a query has made do not fit then."""
-        self._is_tuned = True
+        self.setup.is_tuned = True
         before = float(self.setup.header.cell)
         self.setup.tune()
         if self.setup.header.cell != before:
@@ -161,12 +161,12 @@ class Site:
 
     def _begin_edit(self) -> Setup:
         """Return the setup, which no other world uses from now on."""
-        self._is_tuned = False
         if self.setup.users > 1:
             own = self.setup.copy()
             self.halt()
             self.setup.users -= 1
             self.setup = own
+        self.setup.is_tuned = False
         return self.setup
 
     def _after_edit(self, is_boundless: bool, ends: npt.NDArray[Any] | None = None) -> None:
@@ -225,10 +225,9 @@ class Site:
 
     def place(self, index: int, motion: list[float]) -> None:
         """Put a body somewhere, with another velocity."""
-        trait = self.setup.traits[index]
-        moves = motion[2] != 0.0 or motion[3] != 0.0
-        if trait["slot"] != NO_ONE and (moves or trait["inverse_mass"] > 0.0):
-            self.motions[trait["slot"]] = motion
+        slot, moves = self.setup.slots.item(index), motion[2] != 0.0 or motion[3] != 0.0
+        if slot != NO_ONE and (moves or self.setup.inverse_masses.item(index) > 0.0):
+            self.motions[slot] = motion
             return
         setup, ends = self._begin_edit(), self._ends()
         if moves and setup.entries[index]["state"] != OFF:
@@ -236,6 +235,15 @@ class Site:
         x, y, vx, vy = motion
         count = place_body(self.state, self.inside, setup.workspace, index, x, y, vx, vy, ends)
         self._after_edit(bool(setup.traits[index]["boundless"]), ends[:count])
+
+    def place_all(self, indices: npt.NDArray[np.int64], motions: FloatArray) -> None:
+        """Do the same for several bodies; motions: float64 [n, 4]."""
+        slots = self.setup.slots[indices]
+        moves = (motions[:, 2:] != 0.0).any(axis=1) | (self.setup.inverse_masses[indices] > 0.0)
+        is_quick = (slots != NO_ONE) & moves
+        self.motions[slots[is_quick]] = motions[is_quick]
+        for index, motion in zip(indices[~is_quick].tolist(), motions[~is_quick], strict=True):
+            self.place(index, motion.tolist())
 
     def change(
         self,

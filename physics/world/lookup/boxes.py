@@ -43,10 +43,11 @@ from .tree import NO_ONE, clear_tree, insert_leaf
 OWN_SHARE = 1.1
 TYPICAL_SHARE = 1.2
 SPACING_SHARE = 0.33
-# A body that may meet more than so many moving ones gets a smaller margin, with fewer a larger one,
-# between these shares of the first one.
+# A body that may meet more than so many moving ones gets a smaller margin. One that may meet fewer,
+# and few that are fixed, gets a larger one. All are between these shares of the first one.
 CROWDED = 8
 LONELY = 1
+FEW_FIXED = 6
 LEAST_SHARE = 0.1
 MOST_SHARE = 8.0
 # A box is ahead of the body by this share of the margin, so that the body is in it for longer.
@@ -110,7 +111,7 @@ def next_margin(world: WorldView, slot: int) -> float:
     first = first_margin(world, slot)
     if is_crowded:
         margin *= 0.75
-    elif plan.near < plan.fixed + LONELY:
+    elif plan.near < plan.fixed + LONELY and plan.fixed < FEW_FIXED:
         margin *= 1.25
     return max(LEAST_SHARE * first, min(MOST_SHARE * first, margin))
 

@@ -90,15 +90,31 @@ def next_leaf(world: WorldView, ray: RayRecord, waiting: int) -> tuple[int, int]
         waiting -= 1
         index = stack[waiting]
         node = nodes[index]
-        if entry(ray, node) == math.inf:
+        # It was met, but the ray may have met something before it since then.
+        if ray.fraction < math.inf and _node_entry(ray, node) == math.inf:
             continue
         if node.left == NO_ONE:
             return index, waiting
-        is_left_first = entry(ray, nodes[node.left]) <= entry(ray, nodes[node.right])
+        first, second = _node_entry(ray, nodes[node.left]), _node_entry(ray, nodes[node.right])
+        is_left_first = first <= second
         stack[waiting] = node.right if is_left_first else node.left
-        stack[waiting + 1] = node.left if is_left_first else node.right
-        waiting += 2
+        waiting += max(first, second) < math.inf
+        stack[waiting] = node.left if is_left_first else node.right
+        waiting += min(first, second) < math.inf
     return NO_ONE, 0
+
+
+@kernel
+def _node_entry(ray: RayRecord, node: BoxRecord) -> float:
+    """Return what `entry` does, of a node of the tree: without branches, and without divisions."""
+    room = ray.room + SPARE * (abs(node.lower_x) + abs(node.lower_y))
+    one_x = (node.lower_x - room - ray.x) * ray.inverse_x
+    other_x = (node.upper_x + room - ray.x) * ray.inverse_x
+    one_y = (node.lower_y - room - ray.y) * ray.inverse_y
+    other_y = (node.upper_y + room - ray.y) * ray.inverse_y
+    first = max(0.0, max(min(one_x, other_x), min(one_y, other_y)))
+    last = min(limit(ray), min(max(one_x, other_x), max(one_y, other_y)))
+    return first if first <= last else math.inf
 
 
 @kernel

@@ -12,7 +12,7 @@ from ..view import (
     touches_of,
     traits_of,
 )
-from .touches import add_member
+from .touches import add_member, list_touch
 
 
 @kernel
@@ -26,6 +26,7 @@ def sort_group(world: WorldView) -> None:
         touch.one = places[traits[touch.a].slot] - 1
         if touch.other >= 0:
             touch.other = places[traits[touch.b].slot] - 1
+        list_touch(world, index)
 
 
 @kernel

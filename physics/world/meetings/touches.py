@@ -25,6 +25,7 @@ from .ties import is_straighter
 # How far two bodies may be apart that are tested, in units of what counts as touching. Those that
 # pass each other closely need some way to touch.
 _WAY = 1e4
+NONE = -1  # no touch
 
 
 @kernel
@@ -59,6 +60,7 @@ def add_member(world: WorldView, slot: int) -> int:
     member.old_vy = member.vy = vy
     member.seen = 0
     member.met = member.rests = member.due = 0
+    member.first = member.last = NONE
     return index
 
 
@@ -76,12 +78,35 @@ def velocities_of(world: WorldView, body: int) -> tuple[float, float, float, flo
 @kernel
 def are_joined(world: WorldView, a: int, b: int) -> bool:
     """Return whether there is a touch of two bodies."""
+    return _is_listed(world, a, b) or _is_listed(world, b, a)
+
+
+@kernel
+def _is_listed(world: WorldView, a: int, b: int) -> bool:
+    """Return whether there is a touch of which body a is the first one, and b the other."""
+    slot = traits_of(world)[a].slot
+    if slot < 0 or places_of(world)[slot] == 0:
+        return False
     touches = touches_of(world)
-    for index in range(progress_of(world).touches):
-        touch = touches[index]
-        if (touch.a == a and touch.b == b) or (touch.a == b and touch.b == a):
+    index = members_of(world)[places_of(world)[slot] - 1].first
+    while index != NONE:
+        if touches[index].b == b:
             return True
+        index = touches[index].next
     return False
+
+
+@kernel
+def list_touch(world: WorldView, index: int) -> None:
+    """Append a touch to the list of its first member."""
+    touches = touches_of(world)
+    member = members_of(world)[touches[index].one]
+    touches[index].next = NONE
+    if member.first == NONE:
+        member.first = index
+    else:
+        touches[member.last].next = index
+    member.last = index
 
 
 @kernel
@@ -165,6 +190,7 @@ def append(
     touch.share_a, touch.share_b = shares(inverse_mass_a, inverse_mass_b)
     touch.restitution, touch.aim = restitution, aim
     touch.change = 0.0
+    list_touch(world, progress.touches - 1)
     return True
 
 

@@ -37,21 +37,19 @@ class ArkanoidSandbox:
             self.crates.remove(handle)
 
     def position(self, handle: Any) -> Pair:
-        x, y = self.world.position(handle)
-        return float(x), float(y)
+        return tuple(self.world.position(handle).tolist())
 
     def velocity(self, handle: Any) -> Pair:
-        x, y = self.world.velocity(handle)
-        return float(x), float(y)
+        return tuple(self.world.velocity(handle).tolist())
 
     def push(self, handle: Any, velocity: Pair) -> None:
         self.world.place(handle, velocity=velocity)
 
     def step(self) -> None:
         if self.fall:
-            for handle in self.crates:
-                x, y = self.velocity(handle)
-                self.push(handle, (x, y - self.fall))
+            speeds = self.world.velocity(self.crates)
+            speeds[:, 1] -= self.fall
+            self.world.place(self.crates, velocity=speeds)
         self.world.step(STEP)
 
     def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from arkanoid.physics import Body, Particle, World, WorldBatch
-from arkanoid.physics.world.states import Stepper
+from arkanoid.physics.world import states
 
 
 def make_world() -> World:
@@ -21,18 +21,23 @@ def step_while_others_call(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Step a world; in the middle of it, another thread attempts each of the calls."""
-    plain = Stepper.step
+    plain = states.compiled_step()
 
-    def meddle(stepper: Stepper, dt: float, steps: int) -> Any:
+    def meddle(address: int, count: int, dt: float, steps: int) -> Any:
         for call in calls:
             thread = threading.Thread(target=attempt, args=(call,))
             thread.start()
             thread.join()
-        return plain(stepper, dt, steps)
+        return plain(address, count, dt, steps)
 
-    monkeypatch.setattr(Stepper, "step", meddle)
+    monkeypatch.setattr(states, "compiled_step", lambda: meddle)
+    sites = [each.site for each in (world if isinstance(world, WorldBatch) else [world])]
+    for site in sites:
+        site.halt()
     world.step(1.0)
     monkeypatch.undo()
+    for site in sites:
+        site.halt()
 
 
 @pytest.mark.parametrize("threads", [0, 1, 2])

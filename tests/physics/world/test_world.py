@@ -1,5 +1,6 @@
 """The world as an object: what goes in, what comes out, and how it is edited."""
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -13,6 +14,7 @@ from arkanoid.physics import (
     AxisAlignedRectangle,
     Body,
     Hit,
+    NoBodyError,
     Particle,
     World,
 )
@@ -299,3 +301,52 @@ def test_a_pair_has_its_own_restitution_until_it_is_taken_back() -> None:
         world.set_restitution(0, 1, override)
         world.step(2.0)
         assert world.velocities[1, 1] == expected
+
+
+def test_several_bodies_are_asked_for_and_placed_as_each_alone() -> None:
+    """To write the velocities of a crowd, one call for each body took longer than the step."""
+    one, other = (World() for _ in range(2))
+    for world in (one, other):
+        for number in range(9):
+            mass = None if number % 3 == 0 else 1.0
+            world.add(Body(Particle(0.4), (float(number), 0.0), (0.0, 1.0 * (number == 0)), mass))
+        world.remove(4)
+        assert world.add(Body(Particle(0.4), (4.0, 0.0), mass=1.0)) not in range(9)
+        world.step(0.1)
+    chosen = one.handles[[7, 0, 3, 8, 4]]
+    assert one.position(chosen).tolist() == [one.position(handle).tolist() for handle in chosen]
+    assert one.velocity(chosen).tolist() == [one.velocity(handle).tolist() for handle in chosen]
+    velocities = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 2.0], [3.0, 0.5], [0.0, 0.0]])
+    one.place(chosen, velocity=velocities)
+    one.place(chosen[:2], velocities[:2] + 20.0)
+    one.place(chosen[2:4].tolist(), velocity=(0.5, 0.25))
+    for handle, velocity in zip(chosen.tolist(), velocities.tolist(), strict=True):
+        other.place(handle, velocity=velocity)
+    for handle, velocity in zip(chosen[:2].tolist(), velocities[:2].tolist(), strict=True):
+        other.place(handle, (velocity[0] + 20.0, velocity[1] + 20.0))
+    for handle in chosen[2:4].tolist():
+        other.place(handle, velocity=(0.5, 0.25))
+    assert one.step(0.5).tobytes() == other.step(0.5).tobytes()
+    assert one.snapshot() == other.snapshot()
+
+
+@pytest.mark.parametrize(
+    ("handles", "given", "error", "message"),
+    [
+        ([0, 5], {"velocity": (1.0, 0.0)}, NoBodyError, "no body 5"),
+        ([-1, 0], {"velocity": (1.0, 0.0)}, NoBodyError, "no body -1"),
+        ([0.0, 1.0], {"velocity": (1.0, 0.0)}, TypeError, "integers"),
+        ([[0, 1]], {"velocity": (1.0, 0.0)}, TypeError, "integers"),
+        ([0, 1], {"velocity": [(1.0, 0.0)] * 3}, ValueError, r"\[2, 2\]"),
+        ([0, 1], {"position": (math.nan, 0.0)}, ValueError, "finite"),
+        ([0, 1], {"position": (1.0, 0.0, 0.0)}, ValueError, "shape"),
+    ],
+)
+def test_several_bodies_are_checked_before_any_is_placed(
+    handles: Any, given: Any, error: type[Exception], message: str
+) -> None:
+    world = World([Body(Particle(1.0), (float(3 * number), 0.0), mass=1.0) for number in range(2)])
+    before = world.snapshot()
+    with pytest.raises(error, match=message):
+        world.place(handles, **given)
+    assert world.snapshot() == before
