@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .body import Body
-    from .errors import HitLimitWarning, InseparableError
+    from .errors import HitLimitWarning, InseparableError, NoBodyError
     from .operations import (
         Contact,
         Impact,
@@ -56,6 +56,7 @@ __all__ = [
     "Impact",
     "InseparableError",
     "Moving",
+    "NoBodyError",
     "Particle",
     "RayHit",
     "RayHits",
@@ -73,7 +74,7 @@ __all__ = [
 
 _NAMES = {
     "body": "Body",
-    "errors": "HitLimitWarning InseparableError",
+    "errors": "HitLimitWarning InseparableError NoBodyError",
     "operations": "Contact Impact bounce collide contact detect relax resolve time_of_impact",
     "protocols": "Collidable Dynamic Moving",
     "shapes.colliders": "AxisAlignedHalfPlane AxisAlignedRectangle Collider Convex HalfPlane "

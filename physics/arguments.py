@@ -78,6 +78,11 @@ def inverse_mass(name: str, value: Any) -> float:
 
 def vector(name: str, value: Any) -> Vector:
     """Return two numbers, of which the engine may take the squares, as a tuple of floats."""
+    pair = value.tolist() if type(value) is np.ndarray and value.ndim == 1 else value
+    if type(pair) in (tuple, list) and len(pair) == 2:  # the quick test, again
+        x, y = pair
+        if type(x) is type(y) is float and abs(x) <= FARTHEST and abs(y) <= FARTHEST:
+            return x, y
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         raise TypeError(f"{name} must be two numbers (x, y), but is {value!r}")
     components = list(value)
@@ -96,6 +101,15 @@ def near_all(name: str, values: Any) -> npt.NDArray[np.float64]:
         raise ValueError(f"{name} must have the shape [n, 2], but has {list(points.shape)}")
     if not (np.abs(points) <= FARTHEST).all():
         raise ValueError(f"{name} must be finite, and at most {FARTHEST:g} away from 0")
+    return points
+
+
+def near_each(name: str, values: Any, count: int) -> npt.NDArray[np.float64]:
+    """Return such points, one for each of some bodies, or (x, y) for all of them, [n or 1, 2]."""
+    given = np.asarray(values, np.float64)
+    points = near_all(name, given[None] if given.ndim == 1 else given)
+    if given.ndim == 2 and len(points) != count:
+        raise ValueError(f"{name} must have the shape [{count}, 2], but has {list(given.shape)}")
     return points
 
 

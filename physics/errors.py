@@ -1,4 +1,4 @@
-"""The engine's own error and warning."""
+"""The engine's own errors and warning."""
 
 
 class InseparableError(ValueError):
@@ -18,6 +18,14 @@ class InseparableError(ValueError):
     def __reduce__(self) -> tuple[type["InseparableError"], tuple[object, object]]:
         """Support pickling, to another process for instance."""
         return type(self), (self.a, self.b)
+
+
+class NoBodyError(KeyError):
+    """A handle names no body: it was removed, or there never was one."""
+
+    def __str__(self) -> str:
+        """Return the message itself; a KeyError would put it into quotes."""
+        return str(self.args[0])
 
 
 class HitLimitWarning(RuntimeWarning):

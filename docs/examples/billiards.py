@@ -6,7 +6,7 @@ bounce.
 
 import math
 
-from arkanoid.physics import BEGIN, AxisAlignedHalfPlane, Body, Particle, World
+from arkanoid.physics import BEGIN, HIT, AxisAlignedHalfPlane, Body, Particle, World
 
 WIDTH, HEIGHT = 2.54, 1.27
 RADIUS = 0.0286
@@ -25,26 +25,24 @@ def rack() -> list[tuple[float, float]]:
     ]
 
 
-def table() -> tuple[World, list[str]]:
-    """Return the world, and the names of its bodies in order."""
+def table() -> tuple[World, dict[int, str]]:
+    """Return the world, and the names of its bodies by handle."""
     world = World()
-    names = []
+    names = {}
     for direction, place in (
         ("+x", (0, 0)),
         ("-x", (WIDTH, 0)),
         ("+y", (0, 0)),
         ("-y", (0, HEIGHT)),
     ):
-        world.add(Body(AxisAlignedHalfPlane(direction), place, restitution=0.8))
-        names.append(f"cushion {direction}")
+        cushion = Body(AxisAlignedHalfPlane(direction), place, restitution=0.8)
+        names[world.add(cushion)] = f"cushion {direction}"
     for number, place in enumerate(POCKETS, 1):
-        world.add(Body(Particle(0.04), place), sensor=True)
-        names.append(f"pocket {number}")
+        names[world.add(Body(Particle(0.04), place), sensor=True)] = f"pocket {number}"
     for number, place in enumerate(rack(), 1):
-        world.add(ball(place))
-        names.append(f"ball {number}")
-    world.add(ball((0.25 * WIDTH, 0.5 * HEIGHT), velocity=(9.0, 0.0)))
-    names.append("cue ball")
+        names[world.add(ball(place))] = f"ball {number}"
+    cue_ball = ball((0.25 * WIDTH, 0.5 * HEIGHT), velocity=(9.0, 0.0))
+    names[world.add(cue_ball)] = "cue ball"
     return world, names
 
 
@@ -65,14 +63,10 @@ def main() -> None:
     bounces = 0
     for _ in range(600):
         hits = world.step(FRAME)
-        potted = hits[hits["kind"] == BEGIN]
-        bounces += len(hits) - len(potted)
-        for hit in potted:
+        bounces += int((hits["kind"] == HIT).sum())
+        for hit in hits[hits["kind"] == BEGIN]:
             print(f"{hit['time']:.3f} s: {names[hit['b']]} in {names[hit['a']]}")
-        # The highest index first: removing a body lowers the indices above it.
-        for index in sorted(set(potted["b"].tolist()), reverse=True):
-            world.remove(index)
-            del names[index]
+            world.remove(hit["b"])
     print(f"{bounces} bounces; {energy(world):.2f} J and {len(world) - 10} balls are left")
 
 

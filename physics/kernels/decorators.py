@@ -23,6 +23,7 @@ from .numba_internals import (
     cache_in,
     compile_once_for_constants,
     compiler_state,
+    entry_for,
     hold_signals,
     is_interpreted,
 )
@@ -67,6 +68,15 @@ def inlined(function: F) -> F:
         return function
     joined: F = _njit(function, inline="always", **_ALWAYS)
     return joined
+
+
+def entry_of(function: F, *types: str) -> F:
+    """Return a kernel as Python calls it fastest, for numbers of these types ("int64", "float64").
+
+    Numba looks at each argument of each call for the machine code that suits it. Here there is only
+    one, so a call takes 0.1 µs less. This compiles the kernel, or loads it from the disk cache.
+    """
+    return function if is_interpreted() else cast(F, entry_for(function, types))
 
 
 def _compile(function: F, **options: bool) -> F:

@@ -9,7 +9,7 @@ has one test for each part, which says what is missing and where it is used:
 ``njit(_nrt=..., no_c..._wrapper)`` to leave out code that kernels do not need
 ``Dispatcher.get_call_template``    to compile once for constants and variables
 ``types.unliteral``                 the same
-``Dispatcher.compile``              to hold back signals while it loads or compiles
+``Dispatcher.compile``              to hold back signals while it loads or compiles; it returns code
 ``Dispatcher._cache``               to put our cache in place of Numba's
 ``FunctionCache``                   our cache is a subclass
 ``CompileResultCacheImpl``,
@@ -106,6 +106,14 @@ def hold_signals(dispatcher: Any) -> None:
             return plain(signature)
 
     dispatcher.compile = compile_whole
+
+
+def entry_for(dispatcher: Any, types_of_arguments: tuple[str, ...]) -> Any:
+    """Return a kernel's machine code for numbers of these types, compiled or loaded now.
+
+    It turns its arguments into such numbers as `int` and `float` do, and raises what they raise.
+    """
+    return dispatcher.compile(tuple(getattr(types, name) for name in types_of_arguments))
 
 
 def cache_in(folder: Path, dispatcher: Any) -> None:

@@ -1,10 +1,10 @@
-"""Seams: where the face of one static body ends, and the ground goes on in another one.
+"""Seams: where the face of one body ends, and the ground goes on in another one.
 
 A corner that comes down on a seam meets the corners of two tiles. Each tile alone cannot tell
 whether it is an end of the ground, at which a body may turn or pass, or a seam, which nobody should
 feel. So the world asks who covers the place just beyond the end, and just below the face. If anyone
 does, the face counts up to its end and a little further, on either side of the seam: no point of it
-is without an owner.
+is without an owner. The same holds for a ray that comes along the border of two tiles.
 """
 
 import math
@@ -16,6 +16,7 @@ from .touching import closing_speed, margin_along
 from .touching_point import support_feature
 
 NO_END = (math.inf, 0.0, 0.0)
+ENDS = 2  # of a face: its start and its end
 
 
 @kernel
@@ -41,7 +42,81 @@ def covers(shapes: Shapes, edges: Edges, index: int, x: float, y: float) -> bool
 
 
 @kernel
-def time_at_end(
+def next_end(
+    shapes: Shapes,
+    edges: Edges,
+    a: int,
+    b: int,
+    tried: int,
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    duration: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[int, int, float, float, float]:
+    """Return (tried, number, time, x, y): the next end of a face of b that shape a meets in time.
+
+    Args:
+        shapes, edges, a, b: the shapes.
+        tried: how many ends were looked at already; the first time 0, then what was returned.
+        dx, dy, vx, vy, margin_x, margin_y: as of `_time_at_end`.
+        duration: how much time there is.
+
+    Returns:
+        The number is the face's, an index of ``edges``, or -1 if there is no further end. The rest
+        is as of `_time_at_end`.
+    """
+    first, count = shapes[b].first, ENDS * shapes[b].count
+    while tried < count:
+        number, side = first + tried // ENDS, 1 if tried % ENDS else -1
+        tried += 1
+        time, x, y = _time_at_end(
+            shapes, edges, a, b, number, side, dx, dy, vx, vy, margin_x, margin_y
+        )
+        if time <= duration and time < math.inf:
+            return tried, number, time, x, y
+    return tried, -1, math.inf, 0.0, 0.0
+
+
+@kernel
+def next_side(
+    shapes: Shapes,
+    edges: Edges,
+    index: int,
+    tried: int,
+    dx: float,
+    dy: float,
+    margin_x: float,
+    margin_y: float,
+) -> tuple[int, int, float, float]:
+    """Return (tried, number, x, y): the next face of a shape at (dx, dy) on which the origin lies.
+
+    Arguments and results are as of `next_end`. The point, relative to the shape, is as far out of
+    the face as rounding may hide.
+    """
+    first, count = shapes[index].first, shapes[index].count
+    while tried < count:
+        number = first + tried
+        tried += 1
+        edge = edges[number]
+        x, y = edge.normal_x, edge.normal_y
+        margin, aside = (
+            margin_along(x, y, margin_x, margin_y),
+            margin_along(y, x, margin_x, margin_y),
+        )
+        along = y * dx - x * dy
+        is_on_line = abs(-(x * dx + y * dy) - edge.offset) <= margin
+        is_after_start = not edge.has_start or along > x * edge.start_y - y * edge.start_x + aside
+        is_before_end = not edge.has_end or along < x * edge.end_y - y * edge.end_x - aside
+        if is_on_line and is_after_start and is_before_end:
+            return tried, number, 2.0 * margin * x - dx, 2.0 * margin * y - dy
+    return tried, -1, 0.0, 0.0
+
+
+@kernel
+def _time_at_end(
     shapes: Shapes,
     edges: Edges,
     a: int,
@@ -91,8 +166,10 @@ def time_at_end(
     place = beyond + slide * time
     if place > 2.0 * aside:
         # It comes to the end later, perhaps still within the margin.
+        if slide >= 0.0:
+            return NO_END
         time += place / -slide
-        if slide >= 0.0 or gap - closing * time < -margin:
+        if gap - closing * time < -margin:
             return NO_END
     elif place < -2.0 * (aside + max(slide, 0.0) / closing * margin):
         return NO_END

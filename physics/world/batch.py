@@ -6,62 +6,94 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import whole
+from ..arguments import integer, whole
 from ..body import FloatArray
 from ..kernels.one_thread import OneThread
 from ..kernels.threads import Threads
+from .living.snapshots import pack, unpack
 from .records import Clock
-from .states import Stepper, checked_step, pack_states, unpack_states
+from .states import Stepper, checked_step
 from .world import World
 
 
 class WorldBatch:
     """Copies of a world that develop independently.
 
-    Each copy has its own moving bodies; static bodies are shared. Each copy gives the same bits as
-    the world alone would, for any number of copies and threads.
+    Each copy has its own bodies: ``batch[i]`` is a `World`, with all that it offers. Copies that
+    were never edited share what edits change, so a batch takes little memory. Each copy gives the
+    same bits as the world alone would, for any number of copies and threads.
 
-    A batch belongs to one thread at a time: `step`, `snapshot` and `restore` raise a RuntimeError
-    while another call of them is in progress.
+    A batch belongs to one thread at a time, with all its worlds: a method raises a RuntimeError
+    while another one is in progress.
 
     Args:
         world: the world to copy, as it is now. It does not change.
         num_worlds: the number of copies.
         threads: the number of threads that step them, each a part of the worlds.
-
-    Attributes:
-        moving: int64 [m], the indices of the bodies that move.
-        positions, velocities: float64 [num_worlds, m, 2], of these bodies. Views of the states:
-            write to them to change the next step.
     """
 
     def __init__(self, world: World, num_worlds: int, *, threads: int = 1) -> None:
         count = whole("num_worlds", num_worlds, at_least=1)
         parts = min(count, whole("threads", threads, at_least=1))
-        setup, self._states, insides = world.copies(count)
-        self._setup = setup
-        self.moving = setup.moving
-        motions = setup.motion_view(self._states)
-        self.positions: FloatArray = motions[:, :, :2]
-        self.velocities: FloatArray = motions[:, :, 2:]
-        cuts = np.linspace(0, count, parts + 1).astype(int)
-        self._starts = cuts[:-1].tolist()
-        self._steppers = [
-            Stepper(setup, self._states[start:stop], insides[start:stop])
-            for start, stop in itertools.pairwise(cuts)
+        self._family = world.copies(count, parts)
+        sites = self._family.sites
+        self._starts = [
+            row for row, site in enumerate(sites) if row == 0 or site.part != sites[row - 1].part
         ]
+        self._steppers = [
+            Stepper(sites[start:stop]) for start, stop in itertools.pairwise([*self._starts, count])
+        ]
+        self._worlds: dict[int, World] = {}
         self._threads = Threads("arkanoid-worlds")
         self._closed = False
         self._alone = OneThread("this batch of worlds")
 
+    def __getitem__(self, index: int) -> World:
+        """Return one of the worlds. It is part of the batch: what changes it changes the batch."""
+        number = range(len(self))[integer("the index of a world", index)]
+        if number not in self._worlds:
+            self._worlds[number] = World.at(self._family.sites[number], self._alone)
+        return self._worlds[number]
+
+    @property
+    def handles(self) -> npt.NDArray[np.int64]:
+        """The handles of the bodies that move, int64 [num_worlds, m]; -1 for an unused row.
+
+        A row is a body's until it is removed or ceases to move; then the last row of its world
+        takes its place. Static bodies have no row: see ``batch[i].positions``.
+        """
+        handles = np.full((len(self), self._family.movers_room), -1)
+        for own, site in zip(handles, self._family.sites, strict=True):
+            moving = site.setup.moving
+            own[: len(moving)] = site.setup.entries["handle"][moving]
+        return handles
+
+    @property
+    def positions(self) -> FloatArray:
+        """The positions of the bodies in `handles`, float64 [num_worlds, m, 2].
+
+        This is a view of the states: write to it to change the next step. It is live until a world
+        gets more bodies that move than there is room for; ask again then.
+        """
+        return self._motions()[:, :, :2]
+
+    @property
+    def velocities(self) -> FloatArray:
+        """The velocities of the same bodies, as `positions`."""
+        return self._motions()[:, :, 2:]
+
+    def _motions(self) -> FloatArray:
+        return self._family.sites[0].setup.motion_view(self._family.states)
+
     def __len__(self) -> int:
-        return len(self._states)
+        return len(self._family.sites)
 
     def __repr__(self) -> str:
         times = self.times
         first, last = f"{times.min():g}", f"{times.max():g}"
         when = first if first == last else f"{first} to {last}"
-        bodies = f"moving bodies in each: {len(self.moving)}"
+        most = max(int(site.setup.header.movers) for site in self._family.sites)
+        bodies = f"moving bodies in each: {most}"
         return f"<WorldBatch of {len(self)} ({bodies}) at time {when}>"
 
     @property
@@ -107,23 +139,16 @@ class WorldBatch:
         return np.concatenate(parts)
 
     def snapshot(self) -> bytes:
-        """Return all that changes as the worlds are stepped, as bytes for `restore`."""
-        return self._alone.run(
-            pack_states, self._states, [part.insides for part in self._steppers], self._setup
-        )
+        """Return all that steps and edits change, as bytes for `restore`."""
+        return self._alone.run(pack, self._family.sites)
 
     def restore(self, snapshot: bytes) -> None:
-        """Go back to a snapshot of a batch of this size of the same world.
+        """Go back to a snapshot of a batch of this size of worlds with the same shapes.
 
         Raises:
             ValueError: if it is corrupt, or of another batch. This batch does not change then.
         """
-        self._alone.run(self._restore, snapshot)
-
-    def _restore(self, snapshot: bytes) -> None:
-        insides = unpack_states(snapshot, self._states, self._setup)
-        for start, part in zip(self._starts, self._steppers, strict=True):
-            part.insides = insides[start : start + len(part.insides)]
+        self._alone.run(unpack, snapshot, self._family)
 
     def close(self) -> None:
         """End the threads, if there are any."""
@@ -131,5 +156,5 @@ class WorldBatch:
         self._threads.close()
 
     def _clocks(self) -> npt.NDArray[Any]:
-        clocks: npt.NDArray[Any] = self._states[:, : Clock.itemsize].view(Clock)
+        clocks: npt.NDArray[Any] = self._family.states[:, : Clock.itemsize].view(Clock)
         return clocks[:, 0]

@@ -4,8 +4,8 @@ from ..kernels import kernel
 from ..pairs.touching import touch_margins
 from ..tolerances import NO_WAY, SLIDE, TOUCH
 from .clock_time import elapsed
-from .records import CourseRecord
-from .view import WorldView, edges_of, motions_of, plans_of, shapes_of, traits_of
+from .records import CourseRecord, TraitRecord
+from .view import WorldView, edges_of, motions_of, plans_of, shapes_of, shown_of, traits_of
 
 
 @kernel
@@ -26,6 +26,23 @@ def place_at(motion: CourseRecord, now: float, now_low: float) -> tuple[float, f
     """Return the position (x, y) of a moving body at a time."""
     since = elapsed(now, now_low, motion.at, motion.at_low)
     return motion.x + motion.vx * since, motion.y + motion.vy * since
+
+
+@kernel
+def velocity_of(world: WorldView, slot: int) -> tuple[float, float]:
+    """Return the velocity of the body with this slot; a static body (-1) has none."""
+    if slot < 0:
+        return 0.0, 0.0
+    return motions_of(world)[slot].vx, motions_of(world)[slot].vy
+
+
+@kernel
+def shown_place(world: WorldView, trait: TraitRecord) -> tuple[float, float]:
+    """Return the position (x, y) of a body between two steps."""
+    if trait.slot < 0:
+        return trait.home_x, trait.home_y
+    motion = shown_of(world)[trait.slot]
+    return motion.x, motion.y
 
 
 @kernel

@@ -14,6 +14,7 @@ from .view import (
     WorldView,
     clock_of,
     edges_of,
+    entries_of,
     first_inside_of,
     header_of,
     inside_of,
@@ -54,12 +55,12 @@ def write_event(
     """Write an event of two bodies; return how many events there are now."""
     if a > b:
         a, b, normal_x, normal_y = b, a, -normal_x, -normal_y
-    hit = hits[count]
+    hit, entries = hits[count], entries_of(world)
     hit.world = world_index
     hit.kind = kind
     hit.time = time
-    hit.a = a
-    hit.b = b
+    hit.a = entries[a].handle
+    hit.b = entries[b].handle
     # The sum turns -0 into 0: no bit tells which of the two was first.
     hit.normal[0] = normal_x + 0.0
     hit.normal[1] = normal_y + 0.0
@@ -125,11 +126,13 @@ def leave_placed(world: WorldView, hits: Hits, count: int, world_index: int) -> 
     if inside_of(world).count == 0:
         return count
     for body in range(firsts.shape[0]):
-        place = firsts[body]
+        place = firsts[body] if traits_of(world)[body].sensor < 0 else NO_ONE
         while place != NO_ONE:
-            sensor = pairs[place].sensor
-            place = pairs[place].next
-            if not (_is_fresh(world, body) or _is_fresh(world, sensor)):
+            pair = pairs[place]
+            sensor, moved = pair.sensor, pair.moved
+            place = pair.next
+            pair.moved = 0
+            if not (moved or _is_fresh(world, body) or _is_fresh(world, sensor)):
                 continue
             if not _overlap(world, sensor, body):
                 take_outside(world, sensor, body)
@@ -253,5 +256,8 @@ def leave_all_sensors(world: WorldView, hits: Hits, count: int, world_index: int
     if progress.full or not has_room(world, hits, count):
         return count
     for body in range(first_inside_of(world).shape[0]):
-        count = leave_sensors(world, hits, count, world_index, body, progress.end, progress.end_low)
+        if traits_of(world)[body].sensor < 0:
+            count = leave_sensors(
+                world, hits, count, world_index, body, progress.end, progress.end_low
+            )
     return count

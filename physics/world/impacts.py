@@ -2,15 +2,15 @@
 
 from ..kernels import kernel
 from .clock_time import is_earlier
-from .courses import is_short_way, move_to
+from .courses import is_short_way, move_to, velocity_of
 from .events import contact_point, enter_sensor, has_room, leave_sensors, write_event
 from .lookup.boxes import fit_here, next_margin
-from .meetings.changes import count_hit, plan_after_hit
+from .meetings.changes import count_hit, plan_after_hit, predict_stale
 from .meetings.gathering import meets_alone
 from .meetings.outcome import meet_together
-from .meetings.pair import bounce_pair, velocity_of
+from .meetings.pair import bounce_pair
 from .meetings.passing import inverse_mass_of, slowest_hit
-from .prediction import is_inside, predict
+from .prediction import find_stale, is_inside, predict
 from .records import HIT, LOOK, MEET, Hits
 from .view import (
     WorldView,
@@ -74,7 +74,9 @@ def _look(world: WorldView, slot: int) -> None:
     now, now_low = plan.time, plan.time_low
     move_to(world, moving_of(world)[slot], now, now_low)
     plan.rests = 0
+    count = find_stale(world, slot, 0)  # from its new course, times round in another way
     predict(world, slot, now, now_low, False)
+    predict_stale(world, count, now, now_low)
 
 
 @kernel

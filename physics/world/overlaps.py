@@ -28,6 +28,7 @@ from .view import (
     motions_of,
     moving_of,
     near_of,
+    order_of,
     progress_of,
     shapes_of,
     touches_of,
@@ -45,11 +46,13 @@ def relax_overlaps(world: WorldView) -> bool:
     are moved apart together now and then. The overlaps that remain are noted in the progress as
     crowded, and the next step continues with them.
     """
-    motions = motions_of(world)
+    motions, order, traits = motions_of(world), order_of(world), traits_of(world)
+    put_in_order(world)
     has_moved, has_room_for_all = False, True
     for number in range(RELAX_ROUNDS):
         deepest = 0.0
-        for slot in range(motions.shape[0]):
+        for index in range(order.shape[0]):
+            slot = traits[order[index]].slot
             if motions[slot].fresh:
                 deepest = max(deepest, _relax_body(world, slot))
         if deepest == 0.0:
@@ -59,6 +62,15 @@ def relax_overlaps(world: WorldView) -> bool:
             has_room_for_all = _relax_together(world, deepest)
     progress_of(world).crowded = 1
     return has_moved
+
+
+@kernel
+def put_in_order(world: WorldView) -> None:
+    """Write the moving bodies into ``order``, by index: slots may be in another order by edits."""
+    moving, order = moving_of(world), order_of(world)
+    for slot in range(moving.shape[0]):
+        order[slot] = moving[slot]
+    sort_items(order, moving.shape[0])
 
 
 @kernel
@@ -74,9 +86,10 @@ def _relax_together(world: WorldView, deepest: float) -> bool:
         deepest: of the last overlaps. Only gaps that are not much wider matter.
     """
     clear_group(world)
-    motions, near = motions_of(world), near_of(world)
-    for slot in range(motions.shape[0]):
-        body = moving_of(world)[slot]
+    motions, near, order = motions_of(world), near_of(world), order_of(world)
+    for place in range(order.shape[0]):
+        body = order[place]
+        slot = traits_of(world)[body].slot
         if not motions[slot].fresh or traits_of(world)[body].inverse_mass == 0.0:
             continue
         for index in range(_find_close(world, slot)):
@@ -126,7 +139,7 @@ def _relax_body(world: WorldView, slot: int) -> float:
     for index in range(_find_close(world, slot)):
         other = near[index]
         theirs = traits[other].slot
-        if 0 <= theirs < slot and motions[theirs].fresh:
+        if theirs >= 0 and other < body and motions[theirs].fresh:
             continue  # it was its turn
         found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
         if found:
@@ -247,19 +260,20 @@ def resolve_overlaps(world: WorldView, hits: Hits, count: int, world_index: int)
     This is the lecture's procedure. It has no times of impact, so that a fast body may pass through
     a thin one. It stops early if there is no room for more hits, and can be called again.
     """
-    progress = progress_of(world)
-    while progress.next_slot < motions_of(world).shape[0]:
-        body = moving_of(world)[progress.next_slot]
-        near = find_near(world, progress.next_slot, True)
+    progress, traits, order = progress_of(world), traits_of(world), order_of(world)
+    while progress.next_body < order.shape[0]:
+        body = order[progress.next_body]
+        near = find_near(world, traits[body].slot, False)
         sort_items(near_of(world), near)
         while progress.next_near < near:
             if not has_room(world, hits, count):
                 return count
             other = near_of(world)[progress.next_near]
-            count = _resolve_pair(world, hits, count, world_index, body, other)
+            if other > body or traits[other].slot < 0:  # Of two that move, the first one's turn.
+                count = _resolve_pair(world, hits, count, world_index, body, other)
             progress.next_near += 1
         progress.next_near = 0
-        progress.next_slot += 1
+        progress.next_body += 1
     return count
 
 

@@ -18,7 +18,7 @@ from .lookup.tree import NO_ONE
 from .meetings.impact import impact_of, may_meet
 from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
-from .records import HELD, LEAVE, LOOK, MEET, NOTHING, TraitRecord
+from .records import HELD, INDEX_BITS, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
@@ -34,6 +34,8 @@ from .view import (
     winners_of,
 )
 
+# This is added to the number of a pair that does not bounce.
+WITH_SENSOR = 1 << 62
 # What is far from meeting a body is sorted out with this room, a fraction of the coordinates, and
 # the same fraction of the time.
 SPARE = 1e-9
@@ -63,7 +65,7 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
             consider this one).
     """
     plan = plans_of(world)[slot]
-    _forget_partner(world, slot)
+    forget_partner(world, slot)
     plan.time = math.inf
     plan.time_low = 0.0
     plan.slack = 0.0
@@ -71,14 +73,26 @@ def predict(world: WorldView, slot: int, now: float, now_low: float, only_later:
     _find_event(world, slot, now, now_low, only_later)
     body = moving_of(world)[slot]
     partner = plan.partner if plan.kind == MEET else body
-    plan.pair = min(body, partner) * traits_of(world).shape[0] + max(body, partner)
+    plan.pair = _pair_of(world, body, partner)
     if plan.kind == MEET:
-        _join_suitors(world, slot)
+        join_suitors(world, slot)
     replay(winners_of(world), plans_of(world), slot)
 
 
 @kernel
-def _join_suitors(world: WorldView, slot: int) -> None:
+def _pair_of(world: WorldView, a: int, b: int) -> int:
+    """Return the number of a pair of bodies. At one time, the pair with the lowest comes first.
+
+    What bounces comes before what a sensor notices: a body that is turned away where the sensor
+    begins does not enter it.
+    """
+    traits = traits_of(world)
+    pair = (min(a, b) << INDEX_BITS) | max(a, b)
+    return pair if traits[a].sensor < 0 and traits[b].sensor < 0 else pair + WITH_SENSOR
+
+
+@kernel
+def join_suitors(world: WorldView, slot: int) -> None:
     """Put a body into the list of those that plan to meet its partner, if the partner moves."""
     plans = plans_of(world)
     plan = plans[slot]
@@ -94,7 +108,7 @@ def _join_suitors(world: WorldView, slot: int) -> None:
 
 
 @kernel
-def _forget_partner(world: WorldView, slot: int) -> None:
+def forget_partner(world: WorldView, slot: int) -> None:
     """Let a body plan nothing, and take it out of the list in which it is."""
     plans = plans_of(world)
     plan = plans[slot]
@@ -156,15 +170,24 @@ def _meeting(
         if progress_of(world).inert and has_reached(world, body, other, HELD):
             # So every meeting has a body that it brings closer to being held.
             return math.inf, 0.0, 0.0, 0.0
-        if time == 0.0:
+        if time == 0.0 and (motion.fresh or (trait.slot >= 0 and motions[trait.slot].fresh)):
             progress_of(world).touching = 1
         if time * closing <= margin and passes_by(world, body, other, closing):
             return math.inf, 0.0, 0.0, 0.0
-    return time, normal_x, normal_y, margin / closing if closing > 0.0 else 0.0
+    # For no longer than a flat angle explains: a plan to leave the box must not come before that.
+    slowest = FLATTEST * _speed_of(world, slot, trait.slot)
+    return time, normal_x, normal_y, margin / max(closing, slowest) if closing > 0.0 else 0.0
 
 
 @kernel
-def _may_meet(
+def _speed_of(world: WorldView, slot: int, other: int) -> float:
+    """Return the speed that two bodies may have had to each other; a static one (-1) has none."""
+    motions = motions_of(world)
+    return float(motions[slot].speed + (motions[other].speed if other >= 0 else 0.0))
+
+
+@kernel
+def comes_close(
     world: WorldView,
     slot: int,
     trait: TraitRecord,
@@ -242,7 +265,7 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
     for index in range(count):
         other = near[index]
         trait = traits[other]
-        if not _may_meet(world, slot, trait, x, y, now, now_low, left):
+        if not comes_close(world, slot, trait, x, y, now, now_low, left):
             continue
         since, since_low = motion.at, motion.at_low
         if trait.slot >= 0:
@@ -265,7 +288,9 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             begin, begin_low = later(now, now_low, time)
         wait = elapsed(begin, begin_low, best, best_low)
         # At the same time as the best so far: then the later one is touched already.
-        is_tied = plan.kind == MEET and -plan.slack <= wait <= slack
+        pair = _pair_of(world, body, other)
+        best_pair = _pair_of(world, body, plan.partner) if plan.kind == MEET else WITH_SENSOR
+        is_tied = max(pair, best_pair) < WITH_SENSOR and -plan.slack <= wait <= slack
         are_static = trait.slot < 0 and traits[plan.partner].slot < 0
         if is_tied and (wait == 0.0 or are_static):
             is_first = is_straighter(
@@ -288,7 +313,8 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
                 plan.slack += wait
         else:
             # At the same time, a meeting comes before what a body does alone.
-            is_first = wait < 0.0 or (wait == 0.0 and plan.kind != MEET)
+            is_before = plan.kind != MEET or pair < best_pair
+            is_first = wait < 0.0 or (wait == 0.0 and is_before)
         if is_tied:
             plan.tied = 1
         elif is_first:
@@ -320,18 +346,20 @@ def _plan_alone(
 
     It is at (x, y) with the velocity (vx, vy). This returns when, as a time in two numbers.
     """
-    plan = plans_of(world)[slot]
-    duration = time_to_leave(plan, x, y, vx, vy)
+    plan, motion = plans_of(world)[slot], motions_of(world)[slot]
+    duration, end, end_low = time_to_leave(plan, x, y, vx, vy), math.inf, 0.0
     if duration < math.inf:
         plan.kind = LEAVE
-    if plan.rests >= MOST_RESTS:
-        way, speed = short_way(world, moving_of(world)[slot]), abs(vx) + abs(vy)
-        if speed > 0.0 and way < duration * speed:
+        end, end_low = later(now, now_low, duration)
+    speed = abs(vx) + abs(vy)
+    if plan.rests >= MOST_RESTS and speed > 0.0:
+        # From when its course began, whenever this is asked: so no bit depends on its box.
+        duration = short_way(world, moving_of(world)[slot]) / speed
+        look, look_low = later(motion.at, motion.at_low, duration)
+        if is_earlier(look, look_low, end, end_low):
             plan.kind = LOOK
-            duration = way / speed
-    if plan.kind == NOTHING:
-        return math.inf, 0.0
-    return later(now, now_low, duration)
+            end, end_low = look, look_low
+    return end, end_low
 
 
 @kernel

@@ -4,25 +4,29 @@ import math
 
 from ..kernels import kernel
 from ..kernels.borrowed import borrowed
+from ..pairs.results import NO_IMPACT
+from ..pairs.seams import lies_along
 from ..pairs.table import impact_between, may_touch, overlap_between
-from ..pairs.touching import touch_margins
+from ..pairs.touching import margin_along, touch_margins
 from ..shapes.records import Edge, Edges, Shape, Shapes
+from .courses import shown_place
+from .lookup.borders import meet_border
 from .lookup.boxes import fit_shown, is_astray
 from .lookup.grid import find_in_grid
 from .lookup.neighbours import sort_items
-from .lookup.rays import begin_level_walk, begin_tree_walk, find_in_strip, next_leaf
+from .lookup.rays import begin_level_walk, begin_tree_walk, find_in_strip, next_leaf, passes_close
 from .lookup.tree import find_leaves
-from .records import Block, Indices, Ray, RayRecord, TraitRecord
+from .records import Block, Indices, Ray, RayRecord
 from .view import (
     WorldView,
     boundless_of,
+    entries_of,
     found_of,
     grid_of,
     header_of,
     moving_of,
     near_of,
     open_world,
-    shown_of,
     stack_of,
     static_nodes_of,
     static_tree_of,
@@ -30,15 +34,6 @@ from .view import (
 )
 
 SHAPE_SIZE, EDGE_SIZE, RAY_SIZE = Shape.itemsize, Edge.itemsize, Ray.itemsize
-
-
-@kernel
-def _position(world: WorldView, trait: TraitRecord) -> tuple[float, float]:
-    """Return the position of a body between two steps."""
-    if trait.slot < 0:
-        return trait.home_x, trait.home_y
-    motion = shown_of(world)[trait.slot]
-    return motion.x, motion.y
 
 
 @kernel
@@ -68,7 +63,7 @@ def find_overlapping(
     mask: int,
     found: Indices,
 ) -> int:
-    """Write the bodies that overlap the last shape, at (x, y), into ``found``; return how many.
+    """Write the handles of the bodies into ``found`` that overlap the last shape; return how many.
 
     Args:
         state, workspace: of the world.
@@ -104,7 +99,7 @@ def find_overlapping(
         trait = traits[body]
         if (trait.category & mask) == 0:
             continue
-        their_x, their_y = _position(world, trait)
+        their_x, their_y = shown_place(world, trait)
         dx, dy = their_x - x, their_y - y
         if not may_touch(shapes, own, trait.collider, dx, dy, 0.0, 0.0, 0.0):
             continue
@@ -112,7 +107,7 @@ def find_overlapping(
             shapes, edges, own, trait.collider, x, y, their_x, their_y
         )
         if overlap_between(shapes, edges, own, trait.collider, dx, dy, margin_x, margin_y):
-            found[count] = body
+            found[count] = entries_of(world)[body].handle
             count += 1
     return count
 
@@ -143,20 +138,28 @@ def find_first(
         ray.body = -1
         ray.fraction = math.inf
         for number in range(count):
-            _try(world, shapes, edges, ray, mask, unboxed[number])
+            _try(world, shapes, edges, ray, mask, unboxed[number], count, 0)
         waiting = begin_tree_walk(world)
         while waiting > 0:
             body, waiting = next_leaf(world, ray, waiting)
             if body >= 0:
-                _try(world, shapes, edges, ray, mask, body)
+                _try(world, shapes, edges, ray, mask, body, count, waiting)
         if header_of(world).has_grid:
             for level in range(grid_of(world).lowest, grid_of(world).highest + 1):
-                _try_level(world, shapes, edges, ray, mask, level)
+                _try_level(world, shapes, edges, ray, mask, level, count)
+        if ray.body >= 0:
+            ray.body = entries_of(world)[ray.body].handle
 
 
 @kernel
 def _try_level(
-    world: WorldView, shapes: Shapes, edges: Edges, ray: RayRecord, mask: int, level: int
+    world: WorldView,
+    shapes: Shapes,
+    edges: Edges,
+    ray: RayRecord,
+    mask: int,
+    level: int,
+    unboxed: int,
 ) -> None:
     """Let a ray meet the moving bodies on a level of the grid."""
     found, moving = found_of(world), moving_of(world)
@@ -167,37 +170,62 @@ def _try_level(
             break
         for index in range(count):
             if not is_astray(world, found[index]):
-                _try(world, shapes, edges, ray, mask, moving[found[index]])
+                _try(world, shapes, edges, ray, mask, moving[found[index]], unboxed, 0)
 
 
 @kernel
 def _try(
-    world: WorldView, shapes: Shapes, edges: Edges, ray: RayRecord, mask: int, body: int
+    world: WorldView,
+    shapes: Shapes,
+    edges: Edges,
+    ray: RayRecord,
+    mask: int,
+    body: int,
+    unboxed: int,
+    used: int,
 ) -> None:
-    """Let a ray meet a body, if it does so before all others."""
+    """Let a ray meet a body, if it does so before all others.
+
+    ``unboxed`` and ``used`` are as of `is_filled`.
+    """
     trait = traits_of(world)[body]
     if (trait.category & mask) == 0:
         return
-    own = shapes.shape[0] - 1
-    x, y = _position(world, trait)
-    dx, dy = x - ray.x, y - ray.y
-    # With the whole way, not with what is left of it, so that the order of bodies has no influence.
-    if not may_touch(shapes, own, trait.collider, dx, dy, -ray.way_x, -ray.way_y, 1.0):
-        return
-    margin_x, margin_y = touch_margins(shapes, edges, own, trait.collider, ray.x, ray.y, x, y)
-    time, normal_x, normal_y = impact_between(
-        shapes,
-        edges,
-        own,
-        trait.collider,
-        dx,
-        dy,
-        -ray.way_x,
-        -ray.way_y,
-        1.0,
-        margin_x,
-        margin_y,
-    )
+    x, y = shown_place(world, trait)
+    shape = shapes[trait.collider]
+    time, normal_x, normal_y = _meet(shapes, edges, ray, trait.collider, x, y)
+    is_side = time < math.inf and lies_along(shapes, edges, trait.collider, normal_x, normal_y)
+    may_graze = ray.room == 0.0 and shape.count > 0
+    if may_graze and not is_side and passes_close(ray, shape, x, y):
+        at_border, border_x, border_y = meet_border(
+            world, shapes, edges, ray, mask, body, x, y, unboxed, used
+        )
+        if at_border < math.inf:
+            time, normal_x, normal_y = at_border, border_x, border_y
     if time < ray.fraction or (time == ray.fraction and time < math.inf and body < ray.body):
         ray.body, ray.fraction = body, time
         ray.normal_x, ray.normal_y = normal_x, normal_y
+
+
+@kernel
+def _meet(
+    shapes: Shapes, edges: Edges, ray: RayRecord, other: int, x: float, y: float
+) -> tuple[float, float, float]:
+    """Return the impact (time, normal_x, normal_y) of a ray and a shape at (x, y).
+
+    It is that of the whole way, not of what is left of it: so the order of bodies has no influence.
+    """
+    own, dx, dy, vx, vy = shapes.shape[0] - 1, x - ray.x, y - ray.y, -ray.way_x, -ray.way_y
+    if not may_touch(shapes, own, other, dx, dy, vx, vy, 1.0):
+        return NO_IMPACT
+    margin_x, margin_y = touch_margins(shapes, edges, own, other, ray.x, ray.y, x, y)
+    time, normal_x, normal_y = impact_between(
+        shapes, edges, own, other, dx, dy, vx, vy, 1.0, margin_x, margin_y
+    )
+    sinks = -(vx * normal_x + vy * normal_y) > margin_along(normal_x, normal_y, margin_x, margin_y)
+    if sinks or (
+        time == 0.0 and overlap_between(shapes, edges, own, other, dx, dy, margin_x, margin_y)
+    ):
+        return time, normal_x, normal_y
+    # What does not sink in by more than rounding may hide runs along a side.
+    return NO_IMPACT

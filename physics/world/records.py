@@ -2,13 +2,16 @@
 
 Three blocks of memory hold a world. Each is one array of bytes, so that a kernel call costs little:
 
-- its *state*, which changes: `Clock`, the `Course` of every moving body, the `Plan` of each with
-  the order of these plans in time, and the grid of their boxes. A batch is a matrix with one such
-  row per world.
+- its *state*, which steps change: `Clock`, the `Course` of every moving body, the `Plan` of each
+  with the order of these plans in time, and the grid of their boxes. A batch is a matrix with one
+  such row per world.
 - which bodies are *inside* which sensor, see `lookup.inside`: it grows with what is inside.
-- the *workspace* in which it is stepped: what does not change (`Header`, the bodies' `Trait`
+- the *workspace* in which it is stepped: what only edits change (`Header`, the bodies' `Trait`
   records, shapes, the tree of static bodies) and scratch memory. The worlds of a batch share one
-  workspace, one after the other; each thread has a copy.
+  workspace per thread, one after the other, until a world is edited: then it gets its own.
+
+All parts of a block have room for more than they hold. Where there is no more room, Python makes a
+larger block between two steps.
 """
 
 from typing import Any, TypeAlias
@@ -36,14 +39,36 @@ INERT = 1  # it has used up `max_hits`: it bounces no more
 CRUSHED = 2  # it has no room: what touches it moves into it
 HELD = 3  # it has used up as many again: it stays where it is, as if it had no mass
 
+# Whether plans hold (`Clock.planned`).
+NEW = -1  # there are none yet: all bodies are fresh
+UNPLANNED = 0  # they have to be made
+PLANNED = 1  # they hold, but for fresh bodies and those that users moved
+
+# Whether there are fresh bodies, see `Course` (`Clock.fresh`).
+OLD = 0  # none
+FRESH = 1
+GROUND_GONE = 2  # and one has gone that may have been a part of a moving ground
+
+# Whether an index has a body (`Entry.state`).
+UNUSED = 0  # none
+ON = 1
+OFF = 2  # one that meets nothing, and stays where it is
+
+# The index of a body has so many bits: in a handle, and in the number of a pair (`Plan.pair`).
+INDEX_BITS = 32
+INDEX_MASK = (1 << INDEX_BITS) - 1
+
+# With so few moving bodies there is no grid of them.
+FEW_MOVING = 8
+
 # Times are sums of two numbers, of which the second is small: see `clock_time`.
 Clock = record_dtype(
     [
         ("time", np.float64),  # simulated so far
         ("time_low", np.float64),
         ("capped", np.int64),  # how often a body used up its hits of a step, or had no room
-        ("planned", np.int64),  # 1: the plans hold, but for fresh bodies and those that users moved
-        ("fresh", np.int64),  # 1: there are fresh bodies, see `Course`
+        ("planned", np.int64),  # NEW, UNPLANNED or PLANNED
+        ("fresh", np.int64),  # OLD, FRESH or GROUND_GONE
     ]
 )
 
@@ -74,51 +99,74 @@ Course = record_dtype(
 Trait = record_dtype(
     [
         ("collider", np.int64),  # index in the shape table
-        ("slot", np.int64),  # of its motion and plan; -1 for a static body
-        ("home_x", np.float64),  # position of a static body
+        ("slot", np.int64),  # of its motion and plan; -1 for a body that is static or off
+        ("home_x", np.float64),  # position of such a body
         ("home_y", np.float64),
         ("inverse_mass", np.float64),
         ("restitution", np.float64),
         ("category", np.int64),  # bits
         ("mask", np.int64),  # bits: the categories that it meets
-        ("sensor", np.int64),  # its number; -1 for a solid body
+        ("sensor", np.int64),  # 0: a sensor; -1: a solid body
         ("boundless", np.int64),  # 1: it has no bounding box, and everything is tested against it
     ]
 )
 
-# A pair whose restitution is not the product of its bodies' values; a = -1: no pair.
+# What stepping a body does not need.
+Entry = record_dtype(
+    [
+        ("handle", np.int64),  # of the body, or of the next one that gets this index
+        ("state", np.int64),  # UNUSED, ON or OFF
+        ("next_free", np.int64),  # the next unused index, or -1
+        ("mass", np.float64),  # infinite without a mass
+        ("vx", np.float64),  # of a body that is off: its velocity when it is on again
+        ("vy", np.float64),
+    ]
+)
+
+# A pair, by its handles, whose restitution is not the product of its bodies' values. It is nan if
+# it was taken back; a = -1: no pair.
 Override = record_dtype([("a", np.int64), ("b", np.int64), ("restitution", np.float64)])
 
 Header = record_dtype(
     [
-        ("bodies", np.int64),
+        ("bodies", np.int64),  # indices that have, or had, a body
+        ("bodies_room", np.int64),
+        ("living", np.int64),  # bodies that there are
+        ("free", np.int64),  # the first unused index below `bodies`, or -1
         ("movers", np.int64),  # bodies that move
-        ("sensors", np.int64),
+        ("movers_room", np.int64),
+        ("sensors", np.int64),  # 1: there is, or was, a sensor
         ("max_hits", np.int64),  # of one body in one step, see `count_hit`
         ("continuous", np.int64),  # 1: with times of impact; 0: the lecture's procedure
-        ("inelastic", np.int64),  # 1: some bodies do not bounce
+        ("inelastic", np.int64),  # 1: some bodies do not bounce, or did not
         ("typical", np.float64),  # length: the median of the bodies' sizes
+        ("margin", np.float64),  # of the first box of a typical body, see `lookup.boxes`
         ("cell", np.float64),  # size of the cells of the grid that suit a typical body
         ("has_grid", np.int64),  # 0: so few bodies move that a grid of them is not worth it
         # Where each part of the workspace begins, in bytes, and its number of items where that is
         # none of the numbers above.
         ("traits_at", np.int64),
+        ("entries_at", np.int64),
         ("shapes_at", np.int64),
         ("shapes", np.int64),
+        ("shapes_room", np.int64),
         ("edges_at", np.int64),
         ("edges", np.int64),
+        ("edges_room", np.int64),
         ("moving_at", np.int64),
         ("boundless_at", np.int64),
         ("boundless", np.int64),
         ("static_tree_at", np.int64),
         ("static_nodes_at", np.int64),
-        ("static_nodes", np.int64),  # two per body, or none where no body is static
+        ("static_nodes", np.int64),  # two per body that there is room for
         ("overrides_at", np.int64),
-        ("overrides", np.int64),
+        ("overrides", np.int64),  # length of the table, a power of two or 0
+        ("overrides_used", np.int64),
         ("progress_at", np.int64),
         ("near_at", np.int64),
         ("found_at", np.int64),
         ("stale_at", np.int64),
+        ("order_at", np.int64),
         ("stack_at", np.int64),
         ("places_at", np.int64),
         ("members_at", np.int64),
@@ -136,7 +184,7 @@ Header = record_dtype(
         ("grid_at", np.int64),
         ("level_counts_at", np.int64),
         ("heads_at", np.int64),
-        ("heads", np.int64),  # a power of two, or 0 without a grid
+        ("heads", np.int64),  # a power of two
         ("state_size", np.int64),
     ]
 )
@@ -225,6 +273,9 @@ Pair = record_dtype(
         ("sensor", np.int64),  # -1: unused
         ("body", np.int64),
         ("next", np.int64),  # in the body's list; of an unused pair, the next one of these
+        ("next_guest", np.int64),  # in the sensor's list
+        ("previous_guest", np.int64),
+        ("moved", np.int64),  # 1: one of the two was placed elsewhere, and has no plan
     ]
 )
 
@@ -235,6 +286,8 @@ Ray = record_dtype(
         ("y", np.float64),
         ("way_x", np.float64),  # to its end
         ("way_y", np.float64),
+        ("inverse_x", np.float64),  # 1 / way_x, but at most 1e300
+        ("inverse_y", np.float64),
         ("room", np.float64),  # how far beside it bodies are met
         ("body", np.int64),  # -1: none
         ("fraction", np.float64),  # of the way
@@ -243,18 +296,16 @@ Ray = record_dtype(
     ]
 )
 
-# How far a call of `step_worlds` has come, so that the next one can continue.
+# How far a step has come, so that it can continue when there is more room.
 Progress = record_dtype(
     [
-        ("world", np.int64),  # index of the world that is being stepped
-        ("step", np.int64),  # of that world
         ("running", np.int64),  # 1: the step has begun
         ("end", np.float64),  # of the step
         ("end_low", np.float64),
-        ("next_slot", np.int64),  # the next pair of the lecture's procedure
+        ("next_body", np.int64),  # place of the next pair of the lecture's procedure
         ("next_near", np.int64),
         ("full", np.int64),  # 1: there was no room for another hit
-        ("touching", np.int64),  # 1: two bodies overlap or touch
+        ("touching", np.int64),  # 1: a fresh body overlaps or touches another one
         ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
         ("hits", np.int64),  # of all bodies in this step
         ("inert", np.int64),  # 1: for a body, the hits before decide how it bounces
@@ -281,6 +332,10 @@ Member = record_dtype(
         ("turn_y", np.float64),
         ("met", np.int64),  # touches, and then hits
         ("rests", np.int64),  # 1: some are inelastic
+        ("due", np.int64),  # 1: it had planned to meet somebody now, or somebody to meet it
+        # The touches of which it is the first one are a list, in order; -1 where it ends.
+        ("first", np.int64),
+        ("last", np.int64),
     ]
 )
 
@@ -289,6 +344,7 @@ Touch = record_dtype(
     [
         ("one", np.int64),  # a member
         ("other", np.int64),  # a member, or -1 for a static body
+        ("next", np.int64),  # in the list of the first member
         ("a", np.int64),  # their bodies
         ("b", np.int64),
         ("normal_x", np.float64),  # from a to b
@@ -311,7 +367,7 @@ Hit = record_dtype(
         ("world", np.int64),  # index in the batch; 0 for a single world
         ("kind", np.int64),  # HIT, BEGIN or END
         ("time", np.float64),  # of the world
-        ("a", np.int64),  # the bodies' indices, a < b
+        ("a", np.int64),  # the bodies' handles; a has the lower index
         ("b", np.int64),
         ("normal", np.float64, (2,)),  # unit vector from a to b; zero if not known, see END
         ("point", np.float64, (2,)),
@@ -329,6 +385,7 @@ Courses: TypeAlias = Any  # `Course` [movers]
 Motions: TypeAlias = Any  # `Motion` [movers]
 TraitRecord: TypeAlias = Any  # one `Trait`
 Traits: TypeAlias = Any  # `Trait` [bodies]
+Entries: TypeAlias = Any  # `Entry` [bodies]
 Overrides: TypeAlias = Any  # `Override` [pairs]
 Seats: TypeAlias = Any  # `Seat` [2 * leaves]
 HeaderRecord: TypeAlias = Any  # one `Header`

@@ -1,84 +1,91 @@
-"""The states of worlds, stepped and kept as bytes: what a single world and a batch share."""
+"""Worlds that are stepped by one call of a kernel, and the memory that this takes."""
 
-import hashlib
-import itertools
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arguments import not_negative, whole
-from ..kernels.layouts import aligned_bytes, record_dtype
-from ..kernels.sealed import seal, unseal
+from ..kernels import entry_of
 from ..tolerances import FARTHEST
-from .lookup.inside import inside_blocks, pairs_inside
-from .records import END, Clock, Course, Header, Hit, Motion, Plan
-from .setup import ByteArray, Setup
-from .stepping import INVALID, call_of, step_worlds
-from .view import CLOCK_SIZE
+from .living.site import NO_HITS, Site
+from .records import END, Hit
+from .stepping import INVALID, call_of, step_worlds, use_hits
 
 FIRST_ROOM = 64  # hits; it grows as needed
 
-VERSION = 2  # of the format of snapshots
-_MARK = b"ARKWORLD"
-_DIGEST_SIZE = 16  # bytes
 
-# What is kept of a moving body. All else follows from it, and is made again.
-Kept = record_dtype(
-    [
-        ("shown", Motion),
-        ("after_step", Motion),
-        ("motion", Motion),
-        ("at", np.float64),
-        ("at_low", np.float64),
-        ("speed", np.float64),
-        ("fresh", np.int64),
-    ]
-)
-_OF_COURSES = ("at", "at_low", "speed", "fresh")
-_MANY = 1 << 60  # of what is counted
-
-
-NO_HITS: npt.NDArray[Any] = np.zeros(0, Hit)
+@cache
+def compiled_step() -> Callable[[int, int, float, int], int]:
+    """Return `step_worlds` as it is called fastest."""
+    return entry_of(step_worlds, "int64", "int64", "float64", "int64")
 
 
 class Stepper:
-    """Steps the worlds of a matrix of states, and keeps the memory that this takes.
+    """Steps some worlds, one after the other.
 
     Args:
-        setup: what the worlds share.
-        states: uint8 [worlds, bytes], changed in place.
-        insides: uint8 [worlds, bytes], the same for what is inside sensors.
+        sites: the worlds.
 
     Attributes:
-        workspace: uint8 [bytes], a copy of the setup's.
+        run: `step_worlds`; before the addresses of all blocks are known, what finds them first.
+        address: the first argument of `run`.
+        has_pending: whether edits of a world have caused events.
     """
 
-    def __init__(self, setup: Setup, states: ByteArray, insides: ByteArray) -> None:
-        self.workspace = aligned_bytes(1, len(setup.workspace))[0]
-        self.workspace[:] = setup.workspace
-        self._states = states
-        self._has_sensors = len(setup.sensing) > 0
-        self._hits: npt.NDArray[Any]
-        self._use(insides, np.zeros(FIRST_ROOM, Hit))
+    def __init__(self, sites: Sequence[Site]) -> None:
+        self._sites = sites
+        self._hits: npt.NDArray[Any] = np.zeros(FIRST_ROOM, Hit)
+        self._bytes = memoryview(self._hits.view(np.uint8))
+        self._call: npt.NDArray[np.int64] | None = None
+        self.has_pending = self._has_sensors = False
+        self.halt()
+        for site in sites:
+            site.steppers.append(self)
 
-    @property
-    def insides(self) -> ByteArray:
-        """What is inside sensors, uint8 [worlds, bytes], see `lookup.inside`."""
-        return self._insides
+    def halt(self) -> None:
+        """Ask for the addresses of all blocks before the next step: some may be elsewhere then."""
+        self.run: Callable[[int, int, float, int], int] = self._get_ready_and_run
+        self.address = 0
 
-    @insides.setter
-    def insides(self, blocks: ByteArray) -> None:
-        self._use(blocks, self._hits)
+    def _get_ready_and_run(self, address: int, count: int, dt: float, steps: int) -> int:
+        self._get_ready()
+        return self.run(self.address, count, dt, steps)
+
+    def _get_ready(self) -> None:
+        """Find the addresses of all blocks.
+
+        Raises:
+            InseparableError: two bodies have to bounce that no finite translation separates.
+        """
+        for site in self._sites:
+            site.check()
+            self.has_pending |= len(site.pending) > 0
+        self._has_sensors = any(site.setup.header.sensors for site in self._sites)
+        blocks = [(site.state, site.inside, site.setup.workspace) for site in self._sites]
+        self._call = call_of(blocks, self._hits, self._call)
+        self.address = self._call.ctypes.data
+        self.run = compiled_step()
 
     def step(self, dt: float, steps: int) -> npt.NDArray[Any]:
         """Step all worlds; return their hits, sorted by world and time.
 
         Raises:
+            InseparableError: two bodies have to bounce that no finite translation separates.
             ValueError: if a position or velocity is too large, or has become so.
         """
-        count = step_worlds(self._call, 0, dt, steps)
+        count = self.run(self.address, 0, dt, steps)
+        return self.finish(count, dt, steps) if count or self.has_pending else NO_HITS
+
+    def finish(self, count: int, dt: float, steps: int) -> npt.NDArray[Any]:
+        """Finish what `run` has begun; return the hits.
+
+        Args:
+            count: what `run` has returned.
+            dt, steps: as for `run`.
+        """
         while count < 0:
             if count == INVALID:
                 raise ValueError(
@@ -86,154 +93,37 @@ class Stepper:
                     "or has become too large; or the time has"
                 )
             self._make_room()
-            count = step_worlds(self._call, -1 - count, dt, steps)
-        if count == 0:
-            return NO_HITS  # a slice would take a tenth of the time of a short step
-        hits = self._hits[:count].copy()
+            count = self.run(self.address, -1 - count, dt, steps)
+        # NumPy copies records field by field, which takes several times as long.
+        parts = bytearray(self._bytes[: count * Hit.itemsize])
+        hits: npt.NDArray[Any] = np.ndarray((count,), Hit, parts)
+        if self.has_pending:
+            hits = self._with_pending(hits)
         if self._has_sensors and (hits["kind"] == END).any():
             # That a body left a sensor is known later than it happened.
             hits = hits[np.lexsort((hits["time"], hits["world"]))]
         return hits
 
     def _make_room(self) -> None:
-        """Make room for more hits, and for more that is inside sensors."""
+        """Make room for more that is inside the sensors of a world, or for more hits."""
+        if self._call is None or self._sites[int(self._call[1])].make_room_inside():
+            return
         hits = np.zeros(2 * len(self._hits), Hit)
         hits[: len(self._hits)] = self._hits
-        insides = self._insides
-        if self._has_sensors:
-            header = self.workspace[: Header.itemsize].view(Header)[0]
-            insides = inside_blocks(pairs_inside(insides), int(header.bodies), True)
-        self._use(insides, hits)
+        self._hits, self._bytes = hits, memoryview(hits.view(np.uint8))
+        use_hits(self._call, hits)
 
-    def _use(self, insides: ByteArray, hits: npt.NDArray[Any]) -> None:
-        """Step with other arrays from now on."""
-        insides = np.ascontiguousarray(insides)
-        call = call_of(self._states, insides, self.workspace, hits)
-        # Together, so that Ctrl-C cannot leave addresses of arrays that are no longer there.
-        self._insides, self._hits, self._call = insides, hits, call
+    def _with_pending(self, hits: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return hits after the events that edits have caused before."""
+        parts = []
+        for number, site in enumerate(self._sites):
+            site.pending["world"] = number
+            parts.append(site.pending)
+            site.pending = NO_HITS
+        self.has_pending = False
+        return np.concatenate([*parts, hits])
 
 
 def checked_step(dt: Any, steps: Any) -> tuple[float, int]:
     """Check the length of a step and the number of steps, and return them."""
     return not_negative("dt", dt), whole("steps", steps, at_least=1)
-
-
-def pack_states(states: ByteArray, insides: Iterable[ByteArray], setup: Setup) -> bytes:
-    """Return worlds as a snapshot: what they hold, and the digest of their setup.
-
-    Args:
-        states: uint8 [worlds, bytes].
-        insides: uint8 [worlds, bytes], perhaps in parts.
-        setup: what the worlds share.
-    """
-    kept = np.zeros((len(states), len(setup.moving)), Kept)
-    courses = setup.records(states, "motions", Course)
-    kept["shown"] = setup.motion_view(states).view(Motion)[..., 0]
-    kept["after_step"] = setup.records(states, "shown_after_step", Motion)
-    for name in Motion.names or ():
-        kept["motion"][name] = courses[name]
-    for name in _OF_COURSES:
-        kept[name] = courses[name]
-    clocks = states[:, :CLOCK_SIZE].copy().view(Clock)
-    clocks["planned"] = 0
-    pairs = [own for part in insides for own in pairs_inside(part)]
-    counts = np.array([len(own) for own in pairs], np.int64)
-    parts = (clocks, kept, counts, *pairs)
-    return seal(_MARK, VERSION, _digest(setup) + b"".join(part.tobytes() for part in parts))
-
-
-def unpack_states(snapshot: bytes, states: ByteArray, setup: Setup) -> ByteArray:
-    """Write a snapshot into the states that it was taken of.
-
-    Returns:
-        the blocks of what is inside sensors, uint8 [worlds, bytes].
-
-    Raises:
-        TypeError: if it is not bytes.
-        ValueError: if it is corrupt, of another version, or of another world or batch, or if no
-            step leaves a world like that. The states do not change then.
-    """
-    content = unseal("snapshot of worlds", _MARK, VERSION, snapshot)
-    worlds, movers, bodies = len(states), len(setup.moving), len(setup.traits)
-    sizes = [_DIGEST_SIZE, CLOCK_SIZE * worlds, Kept.itemsize * worlds * movers, 8 * worlds]
-    cuts = np.cumsum(sizes).tolist()
-    digest, clock_bytes, kept_bytes, count_bytes, pair_bytes = (
-        content[start:end] for start, end in itertools.pairwise([0, *cuts, len(content)])
-    )
-    if digest != _digest(setup) or len(content) < cuts[-1]:
-        raise ValueError(
-            "the snapshot is of another world: with other bodies, static ones elsewhere, other "
-            "masks or restitutions, or another number of worlds"
-        )
-    clocks = np.frombuffer(clock_bytes, Clock)
-    kept = np.frombuffer(kept_bytes, Kept).reshape(worlds, movers)
-    counts = np.frombuffer(count_bytes, np.int64)
-    if (counts < 0).any() or (counts > len(pair_bytes)).any():
-        raise _corrupt("numbers of bodies inside sensors")
-    if counts.sum() * 16 != len(pair_bytes):
-        raise ValueError("the snapshot is of another number of worlds, or corrupt")
-    pairs = np.frombuffer(pair_bytes, np.int64).reshape(-1, 2)
-    own_pairs = np.split(pairs, np.cumsum(counts)[:-1])
-    _check_clocks(clocks)
-    _check_motions(kept, clocks)
-    for own in own_pairs:
-        _check_pairs(own, setup)
-    insides = inside_blocks(own_pairs, bodies, len(setup.sensing) > 0)
-    states[:, :CLOCK_SIZE] = clocks.view(np.uint8).reshape(worlds, CLOCK_SIZE)
-    setup.motion_view(states).view(Motion)[..., 0] = kept["shown"]
-    setup.records(states, "shown_after_step", Motion)[:] = kept["after_step"]
-    courses = setup.records(states, "motions", Course)
-    for name in Motion.names or ():
-        courses[name] = kept["motion"][name]
-    for name in _OF_COURSES:
-        courses[name] = kept[name]
-    plans = setup.records(states, "plans", Plan)
-    for name in ("hits", "rests", "instant", "nowhere", "stage"):
-        plans[name] = 0
-    return insides
-
-
-def _digest(setup: Setup) -> bytes:
-    return hashlib.sha256(setup.workspace.tobytes()).digest()[:_DIGEST_SIZE]
-
-
-def _corrupt(part: str) -> ValueError:
-    return ValueError(f"the snapshot is corrupt: no world can have such {part}")
-
-
-def _check_clocks(clocks: npt.NDArray[Any]) -> None:
-    """Raise a ValueError unless clocks are sums of two numbers, and their counts are possible."""
-    whole_time = np.isfinite(clocks["time"]) & (
-        clocks["time"] + clocks["time_low"] == clocks["time"]
-    )
-    counts = (clocks["capped"] >= 0) & (clocks["capped"] < _MANY)
-    flags = (clocks["planned"] == 0) & ((clocks["fresh"] == 0) | (clocks["fresh"] == 1))
-    if not (whole_time & counts & flags).all():
-        raise _corrupt("a clock")
-
-
-def _check_motions(kept: npt.NDArray[Any], clocks: npt.NDArray[Any]) -> None:
-    """Raise a ValueError unless motions are not too large, and began before now."""
-    for part in ("shown", "after_step", "motion"):
-        for name in ("x", "y", "vx", "vy"):
-            if not (np.abs(kept[part][name]) <= FARTHEST).all():
-                raise _corrupt("motions")
-    if not ((kept["speed"] >= 0.0) & np.isfinite(kept["speed"])).all():
-        raise _corrupt("speeds")
-    at, low, now, now_low = kept["at"], kept["at_low"], clocks["time"], clocks["time_low"]
-    past = (at < now[:, None]) | ((at == now[:, None]) & (low <= now_low[:, None]))
-    if not (past & (at + low == at) & ((kept["fresh"] == 0) | (kept["fresh"] == 1))).all():
-        raise _corrupt("courses")
-
-
-def _check_pairs(pairs: npt.NDArray[np.int64], setup: Setup) -> None:
-    """Raise a ValueError unless bodies are inside sensors, in order, and each once."""
-    bodies = len(setup.traits)
-    if not len(pairs):
-        return
-    if ((pairs < 0) | (pairs >= bodies)).any():
-        raise _corrupt("bodies inside sensors")
-    keys = pairs[:, 1] * bodies + pairs[:, 0]
-    sensors = setup.traits["sensor"] >= 0
-    if (np.diff(keys) <= 0).any() or not (sensors[pairs[:, 0]] & ~sensors[pairs[:, 1]]).all():
-        raise _corrupt("bodies inside sensors")

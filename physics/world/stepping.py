@@ -1,12 +1,14 @@
 """A step of a world: its beginning, its events, its end."""
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from ..kernels import kernel
-from ..kernels.borrowed import BYTE
+from ..kernels import accessor, inlined, kernel
+from ..kernels.borrowed import BYTE, INDEX
 from ..kernels.portable.addresses import array_at
 from ..tolerances import FARTHEST, MOST_RESTS
 from .clock_time import later
@@ -15,9 +17,24 @@ from .events import has_room, leave_all_sensors, leave_placed
 from .impacts import run_events
 from .lookup.boxes import first_margin, fit_all, fit_here
 from .lookup.tree import NO_ONE
-from .overlaps import relax_overlaps, resolve_overlaps
+from .meetings.grounds import find_on_grounds, is_kinematic, plan_beside
+from .overlaps import put_in_order, relax_overlaps, resolve_overlaps
 from .prediction import find_stale, predict
-from .records import CRUSHED, FREE, NOTHING, Block, Blocks, Hit, Hits, Indices, Motions
+from .records import (
+    CRUSHED,
+    FREE,
+    FRESH,
+    GROUND_GONE,
+    NOTHING,
+    OLD,
+    PLANNED,
+    UNPLANNED,
+    Block,
+    Hit,
+    Hits,
+    Indices,
+    Motions,
+)
 from .tournament import start_tournament
 from .view import (
     WorldView,
@@ -36,79 +53,103 @@ from .view import (
 
 # What `step_worlds` returns if a number is not finite.
 INVALID = -(1 << 62)
+# Where the worlds' blocks begin in a call, and the numbers of each world.
+CALL_START, CALL_BLOCKS = 5, 6
 
 
-def call_of(states: Blocks, insides: Blocks, workspace: Block, hits: Hits) -> npt.NDArray[np.int64]:
-    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [9].
+def call_of(
+    blocks: Sequence[tuple[Block, Block, Block]], hits: Hits, last: Indices | None
+) -> npt.NDArray[np.int64]:
+    """Return what `step_worlds` needs of worlds: addresses and lengths, int64 [CALL_START + ...].
 
     The arrays must live as long as it is used.
 
     Args:
-        states, insides: uint8 [worlds, bytes], contiguous; workspace: uint8 [bytes]; see `records`.
+        blocks: of each world: its state, what is inside, and the workspace; each uint8 [bytes].
         hits: the buffer, `Hit` [room].
+        last: the same for other arrays, if a step goes on.
     """
-    return np.array(
-        [
-            *(states.ctypes.data, *states.shape),
-            *(insides.ctypes.data, insides.shape[1]),
-            *(workspace.ctypes.data, len(workspace)),
-            *(hits.ctypes.data, len(hits)),
-        ],
-        np.int64,
-    )
+    at = [0, 0] if last is None else last[1:3].tolist()
+    call = [len(blocks), *at, 0, 0]
+    for block in itertools.chain.from_iterable(blocks):
+        call += (block.ctypes.data, len(block))
+    numbers = np.array(call, np.int64)
+    use_hits(numbers, hits)
+    return numbers
+
+
+def use_hits(call: Indices, hits: Hits) -> None:
+    """Let a call write its hits into another buffer, `Hit` [room], which holds the same."""
+    call[3:CALL_START] = hits.ctypes.data, len(hits)
+
+
+@accessor
+def _block_at(call: Indices, place: int) -> Block:
+    """Return the block whose address and length are at a place."""
+    return array_at(call[place], (call[place + 1],), BYTE)
+
+
+@inlined
+def _step_world(
+    world: WorldView, call: Indices, hits: Hits, count: int, dt: float, steps: int
+) -> int:
+    """Step one world, from the step on that the call says; return as `step_worlds` does."""
+    progress, world_index, done = progress_of(world), call[1], call[2]
+    progress.full = 0
+    while done < steps:
+        call[2] = done
+        if progress.running == 0:
+            if not has_room(world, hits, count):
+                return -1 - count
+            count = begin_step(world, hits, count, world_index, dt)
+        if count == INVALID:
+            return INVALID
+        progress.running = 1
+        if header_of(world).continuous:
+            count = run_events(world, hits, count, world_index)
+        else:
+            count = resolve_overlaps(world, hits, count, world_index)
+        count = finish_step(world, hits, count, world_index)
+        if progress.full:
+            return -1 - count
+        progress.running = 0
+        done += 1
+        if count == INVALID:
+            return INVALID
+    return count
 
 
 @kernel
-def step_worlds(call: Indices, count: int, dt: float, steps: int) -> int:
+def step_worlds(address: int, count: int, dt: float, steps: int) -> int:
     """Step every world ``steps`` times by ``dt``; return how many hits are in the buffer.
 
-    If the buffer or a block of what is inside is full, it stops early and returns -1 - count. Call
-    it again with larger ones that hold the same, and it continues. It returns `INVALID` if a
-    position or velocity of a world is not finite or beyond `FARTHEST`, or has become so, or its
-    time.
+    If the buffer or a block of what is inside is full, it stops early and returns -1 - count; the
+    second item of the call is the world. Call it again with larger ones that hold the same, and it
+    continues. It returns `INVALID` if a position or velocity of a world is not finite or beyond
+    `FARTHEST`, or has become so, or its time.
 
     Args:
-        call: where the worlds are, see `call_of`. Each array that Python passes to a kernel takes a
-            tenth of a microsecond, and so this is only one.
+        address: where a call begins, see `call_of`: where the worlds are, and how far they are.
+            (Each array that Python passes to a kernel would take up to a tenth of a microsecond.)
         count: of the `Hit` records that are in the buffer already.
         dt, steps: see above.
     """
-    states = array_at(call[0], (call[1], call[2]), BYTE)
-    insides = array_at(call[3], (call[1], call[4]), BYTE)
-    workspace = array_at(call[5], (call[6],), BYTE)
-    hits = array_at(call[7], (call[8],), Hit)
-    for world_index in range(states.shape[0]):
-        world = open_world(states[world_index], insides[world_index], workspace)
-        progress = progress_of(world)
-        if world_index < progress.world:
-            continue
-        progress.world = world_index
-        progress.full = 0
-        while progress.step < steps:
-            if progress.running == 0:
-                if not has_room(world, hits, count):
-                    return -1 - count
-                count = begin_step(world, hits, count, world_index, dt)
-            if count == INVALID:
-                progress.step = 0
-                progress.world = 0
-                return INVALID
-            progress.running = 1
-            if header_of(world).continuous:
-                count = run_events(world, hits, count, world_index)
-            else:
-                count = resolve_overlaps(world, hits, count, world_index)
-            count = finish_step(world, hits, count, world_index)
-            if progress.full:
-                return -1 - count
-            progress.running = 0
-            progress.step += 1
-            if count == INVALID:
-                progress.step = 0
-                progress.world = 0
-                return INVALID
-        progress.step = 0
-        progress.world = 0
+    worlds = array_at(address, (1,), INDEX)[0]
+    call = array_at(address, (CALL_START + CALL_BLOCKS * worlds,), INDEX)
+    hits = array_at(call[3], (call[4],), Hit)
+    while call[1] < call[0]:
+        place = CALL_START + CALL_BLOCKS * call[1]
+        state, inside = _block_at(call, place), _block_at(call, place + 2)
+        count = _step_world(
+            open_world(state, inside, _block_at(call, place + 4)), call, hits, count, dt, steps
+        )
+        if count == INVALID:
+            call[1] = call[2] = 0
+        if count < 0:
+            return count
+        call[1] += 1
+        call[2] = 0
+    call[1] = 0
     return count
 
 
@@ -127,8 +168,8 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     progress.crowded = 0
     progress.inert = 0
     progress.hits = 0
-    is_calm = clock.fresh == 0 and _are_equal(shown_of(world), shown_after_step_of(world))
-    if is_calm and clock.planned:
+    is_calm = clock.fresh == OLD and _are_equal(shown_of(world), shown_after_step_of(world))
+    if is_calm and clock.planned == PLANNED:
         return count
     if not _are_near(shown_of(world)):
         return INVALID
@@ -136,14 +177,15 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     if header_of(world).sensors > 0:
         count = leave_placed(world, hits, count, world_index)
     if header_of(world).continuous:
-        _plan(world, clock.planned == 0)
+        _plan(world, clock.planned != PLANNED)
         if progress.touching and relax_overlaps(world):
             _plan(world, False)
-        clock.planned = 1
+        clock.planned = PLANNED
         _end_freshness(world)
     else:
-        progress.next_slot = 0
+        progress.next_body = 0
         progress.next_near = 0
+        put_in_order(world)
         _move_all(world)
         fit_all(world, progress.end, progress.end_low)
     return count
@@ -163,7 +205,7 @@ def _adopt_shown(world: WorldView) -> None:
             motion.at, motion.at_low = clock.time, clock.time_low
             motion.speed = abs(seen.vx) + abs(seen.vy)
             motion.fresh = 1
-            clock.fresh = 1
+            clock.fresh = max(clock.fresh, FRESH)
 
 
 @kernel
@@ -171,7 +213,7 @@ def _end_freshness(world: WorldView) -> None:
     """Note that the plans of all bodies hold, unless relaxation has left overlaps."""
     motions = motions_of(world)
     if not progress_of(world).crowded:
-        clock_of(world).fresh = 0
+        clock_of(world).fresh = OLD
         for slot in range(motions.shape[0]):
             motions[slot].fresh = 0
 
@@ -217,13 +259,13 @@ def _plan(world: WorldView, anew: bool) -> None:
     for slot in range(motions.shape[0]):
         fresh += motions[slot].fresh
     if anew or 2 * fresh > motions.shape[0]:
-        _plan_all(world)
+        plan_all(world)
     else:
         _plan_fresh(world)
 
 
 @kernel
-def _plan_all(world: WorldView) -> None:
+def plan_all(world: WorldView) -> None:
     """Make all boxes and all plans."""
     clock = clock_of(world)
     plans = plans_of(world)
@@ -243,17 +285,24 @@ def _plan_all(world: WorldView) -> None:
 def _plan_fresh(world: WorldView) -> None:
     """Make the plans of fresh bodies, and of those that planned to meet them."""
     clock, motions, stale = clock_of(world), motions_of(world), stale_of(world)
-    count = 0
+    count, has_new_ground = 0, clock.fresh == GROUND_GONE
     for slot in range(motions.shape[0]):
         if motions[slot].fresh:
             count = find_stale(world, slot, count)
+            has_new_ground = has_new_ground or is_kinematic(world, slot)
             fit_here(world, slot, clock.time, clock.time_low, first_margin(world, slot))
+    if has_new_ground:
+        count = find_on_grounds(world, count)
     for slot in range(motions.shape[0]):
         if motions[slot].fresh:
             predict(world, slot, clock.time, clock.time_low, False)
     for index in range(count):
         if not motions[stale[index]].fresh:
             predict(world, stale[index], clock.time, clock.time_low, False)
+    if has_new_ground:
+        for slot in range(motions.shape[0]):
+            if motions[slot].fresh and is_kinematic(world, slot):
+                plan_beside(world, slot, clock.time, clock.time_low)
 
 
 @kernel
@@ -281,7 +330,7 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         if not header.continuous or plan.stage >= CRUSHED or plan.rests >= MOST_RESTS:
             # What it passes by in this step, it hits in the next one.
             motion.fresh = 1
-            clock.fresh = 1
+            clock.fresh = max(clock.fresh, FRESH)
         plan.hits = plan.rests = plan.instant = plan.nowhere = 0
         plan.stage = FREE
         seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
@@ -289,6 +338,6 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
         total += abs(x) + abs(y) + abs(vx) + abs(vy)
     clock.time, clock.time_low = end, end_low
     if not total <= FARTHEST and not _are_near(shown):
-        clock.planned = 0
+        clock.planned = UNPLANNED
         return INVALID
     return count

@@ -68,6 +68,21 @@ def replay(seats: Seats, plans: Plans, slot: int) -> None:
 
 
 @kernel
+def take_part(seats: Seats, plans: Plans, slot: int) -> None:
+    """Let a slot take part, which did not."""
+    seats[seats.shape[0] // 2 + slot].slot = slot
+    replay(seats, plans, slot)
+
+
+@kernel
+def drop_out(seats: Seats, plans: Plans, slot: int) -> None:
+    """Let a slot, the last one, no longer take part."""
+    plans[slot].time = math.inf
+    seats[seats.shape[0] // 2 + slot].slot = -1
+    replay(seats, plans, slot)
+
+
+@kernel
 def is_far_ahead(seats: Seats, slot: int, other: int, time: float) -> bool:
     """Return whether the plans of all but the winner, ``slot``, and another one are later.
 

@@ -13,6 +13,8 @@ from .records import (
     ClockRecord,
     Course,
     Courses,
+    Entries,
+    Entry,
     Grid,
     GridRecord,
     Header,
@@ -155,7 +157,7 @@ def inside_of(world: WorldView) -> InsideRecord:
 def first_inside_of(world: WorldView) -> Indices:
     """Return for each body its first pair with a sensor that it is inside, or -1: int64 [bodies].
 
-    There are none without sensors.
+    For a sensor, it is the first pair with a body inside it. There are none without sensors.
     """
     header = header_of(world)
     return borrowed(world.inside, INSIDE_SIZE, header.bodies if header.sensors > 0 else 0, INDEX)
@@ -166,7 +168,7 @@ def pairs_of(world: WorldView) -> Pairs:
     """Return the `Pair` records, [room]."""
     room = inside_of(world).room
     header = header_of(world)
-    heads = header.bodies if header.sensors > 0 else 0
+    heads = header.bodies_room if header.sensors > 0 else 0
     return borrowed(world.inside, INSIDE_SIZE + 8 * heads, room, Pair)
 
 
@@ -181,6 +183,13 @@ def traits_of(world: WorldView) -> Traits:
     """Return the bodies' `Trait` records, [bodies]."""
     header = header_of(world)
     return borrowed(world.workspace, header.traits_at, header.bodies, Trait)
+
+
+@accessor
+def entries_of(world: WorldView) -> Entries:
+    """Return the bodies' `Entry` records, [bodies]."""
+    header = header_of(world)
+    return borrowed(world.workspace, header.entries_at, header.bodies, Entry)
 
 
 @accessor
@@ -256,6 +265,13 @@ def stale_of(world: WorldView) -> Indices:
     """Return scratch memory for the slots whose plans no longer hold, int64 [movers]."""
     header = header_of(world)
     return borrowed(world.workspace, header.stale_at, header.movers, INDEX)
+
+
+@accessor
+def order_of(world: WorldView) -> Indices:
+    """Return scratch memory for the moving bodies in order, int64 [movers]."""
+    header = header_of(world)
+    return borrowed(world.workspace, header.order_at, header.movers, INDEX)
 
 
 @accessor

@@ -1,34 +1,32 @@
 """`World`: many bodies, stepped from impact to impact, and what happened to them."""
 
-import copy
 import math
 import warnings
 from collections.abc import Iterable
+from types import EllipsisType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import finite, integer, inverse_mass, near_all, not_negative, vector, whole
-from ..body import Body, FloatArray
-from ..drawing import draw_scene
+from ..arguments import inverse_mass, near_each, not_negative, vector, whole
+from ..body import Body
 from ..errors import HitLimitWarning
 from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
-from ..shapes.colliders import AxisAlignedRectangle, Collider, Particle
-from .forms import Built, Scene
-from .lookup.answers import RayHit, RayHits, answer_of, answers_of, new_ray, new_rays
-from .queries import find_first, find_overlapping
-from .setup import BodySpec, ByteArray, Setup
-from .states import checked_step, pack_states, unpack_states
+from ..shapes.colliders import Collider
+from .living.site import NO_HITS, Family, Site, copied
+from .living.snapshots import pack, unpack
+from .questions import ALL, Handles, IndexArray, Questions, bits
+from .records import ON
+from .setup import Room, Setup
+from .states import Stepper, checked_step
 
-IndexArray = npt.NDArray[np.int64]
-
-ALL = -1  # a mask of every category
-POINT = Particle(0.0)
+INF = math.inf
+FIRST_ROOM = Room(bodies=8, movers=8, shapes=4, edges=16)  # of a world
 
 
-class World:
+class World(Questions):
     """Bodies that move and collide.
 
     A body with a mass is *dynamic*. A body without mass is *static*, or *kinematic* if it has a
@@ -38,6 +36,12 @@ class World:
     Every impact happens at its exact time, in the order of time, and the step continues after it:
     no body tunnels through another at any speed, and no time is lost. Relaxation is for bodies that
     overlap when a step begins.
+
+    A body is named by its **handle**, an integer that `add` returns. In a world from which nothing
+    was removed, handles are 0, 1, 2 ... The index of a removed body, the low 32 bits of its handle,
+    serves again for another body, with another handle. So the handle of a removed body is never
+    the one of another body: it raises a `NoBodyError`. The cost of an edit depends on what is
+    around the body, and not on the number of bodies.
 
     A world belongs to one thread at a time: while a method is running, each other one raises a
     RuntimeError.
@@ -56,19 +60,30 @@ class World:
     def __init__(
         self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 10_000
     ) -> None:
-        # The scene holds what users edit. From the first step on, until the next edit, the built
-        # form is ahead of it.
-        self._scene = Scene(bool(continuous), whole("max_hits", max_hits, at_least=1))
-        self._built: Built | None = None
-        self._alone = OneThread("this world")
+        self._max_hits = whole("max_hits", max_hits, at_least=1)
+        setup = Setup(FIRST_ROOM, self._max_hits, bool(continuous))
+        self._use(Family([setup], [0]).sites[0], OneThread("this world"))
         for body in bodies:
             self.add(body)
+
+    def _use(self, site: Site, guard: OneThread) -> None:
+        self.site = site
+        self._stepper = Stepper([site])
+        self._alone = guard
+
+    @classmethod
+    def at(cls, site: Site, guard: OneThread) -> "World":
+        """Return the world whose blocks are given, which a batch steps, too."""
+        world = cls.__new__(cls)
+        world._max_hits = int(site.setup.header.max_hits)
+        world._use(site, guard)
+        return world
 
     @alone
     def add(
         self, body: Collidable, *, category: int = 1, mask: int = ALL, sensor: bool = False
     ) -> int:
-        """Add a body, or anything with a ``collider`` and a ``position``; return its index.
+        """Add a body, or anything with a ``collider`` and a ``position``; return its handle.
 
         Args:
             body: its ``velocity``, ``mass`` and ``restitution`` are used, too, if it has them.
@@ -77,104 +92,127 @@ class World:
                 other one's category.
             sensor: it is not solid: there are events when another body enters or leaves it.
         """
-        if not isinstance(body, Collidable):
+        if type(body) is not Body and not isinstance(body, Collidable):
             raise TypeError(f"a body needs a collider and a position; {body!r} lacks one")
         if not isinstance(body.collider, Collider):
             raise TypeError(f"a collider is needed, such as Particle(1.0), not {body.collider!r}")
         position = vector("position", body.position)
         velocity = vector("velocity", getattr(body, "velocity", (0.0, 0.0)))
         mass = getattr(body, "mass", None)
-        inverse_mass("mass", mass)
-        spec = BodySpec(
+        inverse = inverse_mass("mass", mass)
+        return self.site.add(
             body.collider,
-            None if mass is None else float(mass),
+            (*position, *velocity),
+            math.inf if mass is None else float(mass),
+            inverse,
             not_negative("restitution", getattr(body, "restitution", 1.0)),
-            _bits("category", category),
-            _bits("mask", mask),
+            bits("category", category),
+            bits("mask", mask),
             bool(sensor),
         )
-        scene = self._edit()
-        scene.specs.append(spec)
-        scene.motions.append([*position, *velocity])
-        return len(scene.specs) - 1
 
     @alone
-    def remove(self, index: int) -> None:
-        """Remove a body. The indices of later ones go down by one."""
-        checked = self._index(index)
-        self._edit().remove(checked)
+    def remove(self, handle: int) -> None:
+        """Remove a body. All other handles stay as they are.
+
+        For each sensor that it was inside, and for each body inside it if it was a sensor, the next
+        step begins with an `END`, which names the handles that there were.
+        """
+        self.site.remove(self._index(handle))
 
     @alone
-    def body(self, index: int) -> Body:
-        """Return a body as it is now; changing it does not change the world."""
-        return self._scene.body(self._index(index), self._all_motions())
-
-    @alone
-    def place(self, index: int, position: Any | None = None, velocity: Any | None = None) -> None:
-        """Put a body somewhere, give it another velocity, or both.
+    def place(
+        self, handle: Handles, position: Any | None = None, velocity: Any | None = None
+    ) -> None:
+        """Put a body somewhere, give it another velocity, or both; or several bodies at once.
 
         The next step relaxes the overlaps that this makes. It begins with an `END` for each sensor
         that the body is no longer inside, and a `BEGIN` for each that it is now inside.
+
+        Args:
+            handle: of the body; or of several, int64 [n].
+            position, velocity: (x, y); of several bodies float64 [n, 2], or (x, y) for all of them.
         """
-        body = self._index(index)
-        changes = [] if position is None else [(slice(0, 2), vector("position", position))]
-        changes += [] if velocity is None else [(slice(2, 4), vector("velocity", velocity))]
-        slot = -1 if self._built is None else int(self._built.setup.traits["slot"][body])
-        if self._built is not None and slot >= 0:
-            for columns, value in changes:
-                self._built.motions[slot, columns] = value
-        else:
-            # A static body is part of the setup, which is built again.
-            scene = self._edit()
-            for columns, value in changes:
-                scene.motions[body][columns] = value
+        if type(handle) is not int and np.ndim(handle):
+            self._place_all(self._indices(handle), position, velocity)
+            return
+        index = self._index(handle)
+        motion = self.site.place_of(index)
+        if position is not None:
+            motion[:2] = vector("position", position)
+        if velocity is not None:
+            motion[2:] = vector("velocity", velocity)
+        self.site.place(index, motion)
+
+    def _place_all(self, indices: IndexArray, position: Any | None, velocity: Any | None) -> None:
+        """Place several bodies."""
+        motions = np.empty((len(indices), 4))
+        for first, name, given in ((0, "position", position), (2, "velocity", velocity)):
+            motions[:, first : first + 2] = (
+                self.site.places(indices, first)
+                if given is None
+                else near_each(name, given, len(indices))
+            )
+        self.site.place_all(indices, motions)
+
+    @alone
+    def change(
+        self,
+        handle: int,
+        *,
+        mass: float | EllipsisType | None = ...,
+        restitution: float | None = None,
+        category: int | None = None,
+        mask: int | None = None,
+        sensor: bool | None = None,
+        active: bool | None = None,
+    ) -> None:
+        """Change what a body is; what is not given stays.
+
+        What the body is no longer inside by that, or the other way round, ends as with `remove`.
+
+        Args:
+            handle: the body's.
+            mass: or None for a body that collisions do not move.
+            restitution, category, mask, sensor: as for `add`.
+            active: a body that is not active stays where it is, meets nothing, and no query finds
+                it. It keeps its handle, and its velocity for later.
+        """
+        index, site = self._index(handle), self.site
+        trait, entry = site.setup.traits[index], site.setup.entries[index]
+        new_mass, inverse = float(entry["mass"]), float(trait["inverse_mass"])
+        if not isinstance(mass, EllipsisType):
+            inverse = inverse_mass("mass", mass)
+            new_mass = math.inf if mass is None else float(mass)
+        elasticity = None if restitution is None else not_negative("restitution", restitution)
+        is_on = bool(entry["state"] == ON) if active is None else bool(active)
+        masks = (
+            int(trait["category"]) if category is None else bits("category", category),
+            int(trait["mask"]) if mask is None else bits("mask", mask),
+            bool(trait["sensor"] >= 0) if sensor is None else bool(sensor),
+        )
+        if elasticity is not None:
+            site.set_restitution(index, elasticity)
+        if any(value is not None for value in (category, mask, sensor, active)) or mass is not ...:
+            site.change(index, is_on, new_mass, inverse, *masks)
 
     @alone
     def set_restitution(self, a: int, b: int, restitution: float | None) -> None:
         """Give a pair its own restitution, or again the product of its bodies' values (None)."""
         first, second = sorted((self._index(a), self._index(b)))
         if first == second:
-            raise ValueError(f"a pair is of two bodies, but both are {first}")
-        if restitution is not None:
-            restitution = not_negative("restitution", restitution)
-        scene = self._edit()
-        scene.overrides.pop((first, second), None)
-        if restitution is not None:
-            scene.overrides[first, second] = restitution
-
-    def __len__(self) -> int:
-        return len(self._scene.specs)
-
-    @property
-    @alone
-    def positions(self) -> FloatArray:
-        """The positions of all bodies: float64 [n, 2], a read-only copy (see `place`)."""
-        return self._columns(slice(0, 2))
-
-    @property
-    @alone
-    def velocities(self) -> FloatArray:
-        """The velocities of all bodies: float64 [n, 2], a read-only copy (see `place`)."""
-        return self._columns(slice(2, 4))
-
-    @property
-    def time(self) -> float:
-        """How long the world has been stepped."""
-        if self._built is None:
-            return self._scene.time[0]
-        return float(self._built.clock["time"][0])
-
-    @property
-    def capped(self) -> int:
-        """How often a body has used up its hits of a step, or had no room."""
-        return (self._built or self._scene).capped
+            raise ValueError(f"a pair is of two bodies, but both are {a}")
+        value = math.nan if restitution is None else not_negative("restitution", restitution)
+        self.site.override(min(int(a), int(b)), max(int(a), int(b)), value)
 
     def step(self, dt: float, steps: int = 1) -> npt.NDArray[Any]:
         """Step the world ``steps`` times by ``dt``; return what happened.
 
         Returns:
             `Hit` records in the order of time: bounces (`HIT`), and bodies that enter (`BEGIN`) or
-            leave (`END`) a sensor.
+            leave (`END`) a sensor. Their handles may be of bodies that were removed since. An END
+            that an edit has caused, see `remove`, has the time of the edit; these come first, in
+            the order of their bodies' indices.
 
         Raises:
             InseparableError: no finite translation separates two solid bodies of which one moves.
@@ -183,22 +221,26 @@ class World:
             RuntimeError: another call is in progress.
         """
         # Most steps save this call, and the next but one.
-        if not (type(dt) is float and 0.0 <= dt < math.inf and type(steps) is int and steps == 1):
+        if not (type(dt) is float and 0.0 <= dt < INF and type(steps) is int and steps == 1):
             dt, steps = checked_step(dt, steps)
-        guard = self._alone
+        guard, stepper = self._alone, self._stepper
         if guard.taken:
             guard.refuse()
         guard.taken = True
         try:
-            built = self._built or self.built()
-            hits = built.stepper.step(dt, steps)
+            # What `stepper.step` does: to call it would take a sixth of the time of a short step.
+            count = stepper.run(stepper.address, 0, dt, steps)
+            if not count and not stepper.has_pending:
+                return NO_HITS
+            hits = stepper.finish(count, dt, steps)
         finally:
             guard.taken = False
-        if len(hits) and built.capped != built.warned:
-            built.warned = built.capped
+        site = self.site
+        if len(hits) and site.capped.item() != site.warned:
+            site.warned = site.capped.item()
             warnings.warn(
                 "a body has no room, or used up the hits of a step (max_hits="
-                f"{self._scene.max_hits}); for the rest of it, it did not bounce. If it is only "
+                f"{self._max_hits}); for the rest of it, it did not bounce. If it is only "
                 "very fast, it needs shorter steps or a larger max_hits",
                 HitLimitWarning,
                 stacklevel=2,
@@ -206,173 +248,41 @@ class World:
         return hits
 
     @alone
-    def query_point(self, point: Any, mask: int = ALL) -> IndexArray:
-        """Return the indices of the bodies that contain a point."""
-        return self._overlapping(POINT, vector("point", point), mask)
-
-    @alone
-    def query_box(self, lower: Any, upper: Any, mask: int = ALL) -> IndexArray:
-        """Return the indices of the bodies that overlap a box, from its lower left corner up."""
-        low, high = vector("lower", lower), vector("upper", upper)
-        if not (low[0] < high[0] and low[1] < high[1]):
-            raise ValueError(f"lower must be below and left of upper, but they are {low}, {high}")
-        middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
-        return self._overlapping(
-            AxisAlignedRectangle(high[0] - low[0], high[1] - low[1]), middle, mask
-        )
-
-    @alone
-    def query_ray(
-        self, start: Any, end: Any, radius: float = 0.0, mask: int = ALL
-    ) -> RayHit | None:
-        """Return what a ray from start to end, or a disc cast along it, meets first; or None.
-
-        A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
-        a side does not. At a corner the normal points against the ray, but is turned no further
-        than the normals of the corner's sides.
-        """
-        ray = new_ray(*vector("start", start), *vector("end", end))
-        self._cast(ray, radius, mask)
-        return answer_of(ray)
-
-    @alone
-    def query_rays(self, starts: Any, ends: Any, radius: float = 0.0, mask: int = ALL) -> RayHits:
-        """Return what many rays meet first, with the answers of `query_ray`, but much faster.
-
-        Args:
-            starts, ends: float64 [n, 2].
-            radius, mask: of all rays.
-        """
-        rays = new_rays(near_all("starts", starts), near_all("ends", ends))
-        self._cast(rays, radius, mask)
-        return answers_of(rays)
-
-    @alone
     def snapshot(self) -> bytes:
-        """Return all that changes as the world is stepped, as bytes for `restore`."""
-        built = self.built()
-        return pack_states(built.states, [built.stepper.insides], built.setup)
+        """Return all that steps and edits change, as bytes for `restore`."""
+        return pack([self._checked()])
 
     @alone
     def restore(self, snapshot: bytes) -> None:
-        """Go back to a snapshot of this world, or of one with the same bodies.
+        """Go back to a snapshot of this world, or of another one with the same shapes.
+
+        Its bodies have the handles then that they had when it was taken.
 
         Raises:
-            ValueError: if it is corrupt, or of another world. This world does not change then.
+            ValueError: if it is corrupt, has another ``max_hits`` or ``continuous``, or shapes that
+                no body of this world ever had. This world does not change then.
         """
-        built = self.built()
-        built.stepper.insides = unpack_states(snapshot, built.states, built.setup)
-        built.warned = built.capped
+        if self.site.family.sites != [self.site]:
+            raise ValueError("this world is part of a batch: restore a snapshot of the batch")
+        unpack(snapshot, self.site.family)
 
     @alone
-    def copies(self, count: int) -> tuple[Setup, ByteArray, ByteArray]:
-        """Return what does not change as the world is stepped, and copies of what does.
-
-        Returns:
-            (setup, states, insides), both uint8 [count, bytes].
-        """
-        built = self.built()
-        insides = np.repeat(built.stepper.insides, count, axis=0)
-        return built.setup, np.repeat(built.states, count, axis=0), insides
-
-    def built(self) -> Built:
-        """Return the form of the world that kernels step; it is built if need be."""
-        if self._built is None:
-            self._built = Built(self._scene)
-        return self._built
-
-    def __repr__(self) -> str:
-        dynamic = sum(spec.mass is not None for spec in self._scene.specs)
-        sensors = sum(spec.is_sensor for spec in self._scene.specs)
-        kinds = f"{dynamic} dynamic, {sensors} sensors"
-        return f"<World of {len(self)} bodies ({kinds}) at time {self.time:g}>"
-
-    def draw(self, hits: Iterable[Any] = (), paths: Any = (), width: int = 480) -> str:
-        """Return a picture of the bodies as SVG; static ones are grey, sensors are dashed.
-
-        Args:
-            hits: `Hit` records; each one's point and normal are drawn.
-            paths: positions of all bodies at several times, [times, n, 2], for example a list of
-                `positions`; the ways between them are drawn.
-            width: of the picture, in pixels.
-        """
-        looks = [
-            "sensor" if spec.is_sensor else "static" if spec.mass is None else "dynamic"
-            for spec in self._scene.specs
-        ]
-        colliders = [spec.collider for spec in self._scene.specs]
-        return draw_scene(colliders, self.positions, looks, hits, paths, width)
-
-    def _repr_svg_(self) -> str:
-        """Return the picture that notebooks show."""
-        return self.draw()
+    def copies(self, count: int, parts: int) -> Family:
+        """Return copies of this world, in so many parts, each of which one thread steps."""
+        return copied(self._checked(), count, parts)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Support pickling and copying: what the world was built from, and a snapshot."""
-        snapshot = None if self._built is None else self.snapshot()
-        return {"scene": self._scene, "snapshot": snapshot}
+        """Support pickling and copying: the shapes, and a snapshot."""
+        setup = self.site.setup
+        return {
+            "colliders": tuple(setup.colliders),
+            "continuous": bool(setup.header.continuous),
+            "max_hits": self._max_hits,
+            "snapshot": self._alone.run(pack, [self.site]),
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._scene = copy.deepcopy(state["scene"])
-        self._built = None
-        self._alone = OneThread("this world")
-        if state["snapshot"] is not None:
-            self.restore(state["snapshot"])
-
-    def _edit(self) -> Scene:
-        """Return the scene, up to date and free to be edited; give up the built form."""
-        if self._built is not None:
-            self._built.write_back(self._scene)
-            self._built = None
-        return self._scene
-
-    def _all_motions(self) -> FloatArray:
-        """Return x, y, vx, vy of all bodies, float64 [n, 4], a copy."""
-        return (self._built or self._scene).all_motions()
-
-    def _columns(self, columns: slice) -> FloatArray:
-        part = np.ascontiguousarray(self._all_motions()[:, columns])
-        part.flags.writeable = False
-        return part
-
-    def _cast(self, rays: npt.NDArray[Any], radius: float, mask: int) -> None:
-        """Let rays, or discs that are cast along them, meet bodies."""
-        shape = POINT if type(radius) is float and radius == 0.0 else Particle(radius)
-        rays["room"] = shape.rounding
-        built = self.built()
-        find_first(
-            built.states[0],
-            built.stepper.workspace,
-            *built.tables_with(shape),
-            rays.view(np.uint8),
-            _bits("mask", mask),
-        )
-
-    def _overlapping(self, shape: Collider, position: tuple[float, float], mask: int) -> IndexArray:
-        built = self.built()
-        found = np.zeros(len(self), np.int64)
-        count = find_overlapping(
-            built.states[0],
-            built.stepper.workspace,
-            *built.tables_with(shape),
-            finite("x", position[0]),
-            finite("y", position[1]),
-            _bits("mask", mask),
-            found,
-        )
-        return found[:count]
-
-    def _index(self, index: Any) -> int:
-        """Check the index of a body, and return it."""
-        checked = integer("the index of a body", index)
-        if not 0 <= checked < len(self):
-            raise IndexError(f"there is no body {index!r}: there are {len(self)}")
-        return checked
-
-
-def _bits(name: str, value: Any) -> int:
-    """Return an integer of 64 bits."""
-    bits = integer(name, value)
-    if not -(1 << 63) <= bits < 1 << 63:
-        raise ValueError(f"{name} must fit into 64 bits, but is {value!r}")
-    return bits
+        World.__init__(self, continuous=state["continuous"], max_hits=state["max_hits"])
+        for collider in state["colliders"]:
+            self.site.setup.add_collider(collider)
+        self.restore(state["snapshot"])

@@ -1,4 +1,4 @@
-"""Compares the engine with Chipmunk (pymunk) and Box2D: speed, energy, tunnelling, bounces.
+"""Compares the engine with Chipmunk (pymunk) and Box2D: bounces, tiles, crowds, piles, rays, ...
 
 Run: python tests/benchmarks/engine.py [--quick] [--only-ours]
 
@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import version
 
 import numpy as np
+import sandboxes
 from engines import PEERS, Engine, installed_peers
 from engines.arkanoid_engine import Arkanoid, Batch, ManySteps
 from engines.scene import (
@@ -266,6 +267,7 @@ def main() -> None:
         billiards_all(table, round(1_000 / path) // part, rounds, path)
     tunnelling(table, 60)
     bounces(table, 1_000)
+    sandboxes.compare(table, quick, options.only_ours)
 
 
 if __name__ == "__main__":

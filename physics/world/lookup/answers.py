@@ -9,12 +9,16 @@ import numpy.typing as npt
 from ...body import FloatArray
 from ..records import Ray
 
+# The inverse of a way, and how short a way may be for one: 0 has none that is a number.
+LARGEST = 1e300
+LEAST = 1e-300
+
 
 class RayHit(NamedTuple):
     """What a ray meets first.
 
     Attributes:
-        body: its index.
+        body: its handle.
         fraction: of the ray, from 0 at its start (also if it starts inside the body) to 1.
         point: where the ray, or the centre of the disc that is cast, is then.
         normal: unit vector out of the body.
@@ -30,7 +34,8 @@ class RayHits(NamedTuple):
     """What many rays meet first, see `RayHit`.
 
     Attributes:
-        bodies: int64 [n]; -1 for a ray that meets none, whose other values are inf and nan.
+        bodies: their handles, int64 [n]; -1 for a ray that meets none, whose other values are inf
+            and nan.
         fractions: float64 [n].
         points: float64 [n, 2].
         normals: float64 [n, 2].
@@ -45,7 +50,9 @@ class RayHits(NamedTuple):
 def new_ray(x: float, y: float, end_x: float, end_y: float) -> npt.NDArray[Any]:
     """Return a ray, `Ray` [1]."""
     ray = np.zeros(1, Ray)
-    ray[0] = (x, y, end_x - x, end_y - y, 0.0, 0, 0.0, 0.0, 0.0)
+    way_x, way_y = end_x - x, end_y - y
+    inverses = [1.0 / way if abs(way) > LEAST else LARGEST for way in (way_x, way_y)]
+    ray[0] = (x, y, way_x, way_y, *inverses, 0.0, 0, 0.0, 0.0, 0.0)
     return ray
 
 
@@ -55,13 +62,16 @@ def new_rays(starts: FloatArray, ends: FloatArray) -> npt.NDArray[Any]:
         raise ValueError(f"there are {len(starts)} starts, but {len(ends)} ends")
     rays = np.zeros(len(starts), Ray)
     rays["x"], rays["y"] = starts.T
-    rays["way_x"], rays["way_y"] = (ends - starts).T
+    ways = ends - starts
+    rays["way_x"], rays["way_y"] = ways.T
+    inverses = np.divide(1.0, ways, np.full_like(ways, LARGEST), where=abs(ways) > LEAST)
+    rays["inverse_x"], rays["inverse_y"] = inverses.T
     return rays
 
 
 def answer_of(ray: npt.NDArray[Any]) -> RayHit | None:
     """Return what a ray, `Ray` [1], has met."""
-    x, y, way_x, way_y, _, body, fraction, normal_x, normal_y = ray.item()
+    x, y, way_x, way_y, _, _, _, body, fraction, normal_x, normal_y = ray.item()
     if body < 0:
         return None
     point = np.array((x + fraction * way_x, y + fraction * way_y))

@@ -8,15 +8,20 @@ It has no influence on any result.
 """
 
 import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
 from ...tolerances import TOUCH
 from ..courses import place_at
-from ..records import Block, PlanRecord
+from ..records import FEW_MOVING, ON, PLANNED, Block, PlanRecord
 from ..view import (
     WorldView,
     clock_of,
+    entries_of,
     grid_of,
     header_of,
     motions_of,
@@ -34,13 +39,15 @@ from .links import move_box
 from .neighbours import TOO_MANY
 from .tree import NO_ONE, clear_tree, insert_leaf
 
-# The margin, in units of the body's size and of the median of all sizes.
+# The margin, in units of the body's size, of the median of all sizes, and of the bodies' distance.
 OWN_SHARE = 1.1
 TYPICAL_SHARE = 1.2
-# A body that may meet more than so many others gets a smaller margin, with fewer a larger one,
-# between these shares of the first one.
-CROWDED = 12
-LONELY = 6
+SPACING_SHARE = 0.33
+# A body that may meet more than so many moving ones gets a smaller margin. One that may meet fewer,
+# and few that are fixed, gets a larger one. All are between these shares of the first one.
+CROWDED = 8
+LONELY = 1
+FEW_FIXED = 6
 LEAST_SHARE = 0.1
 MOST_SHARE = 8.0
 # A box is ahead of the body by this share of the margin, so that the body is in it for longer.
@@ -52,9 +59,29 @@ FAR = 1e-9
 ROUNDING = 4.0 * TOUCH
 
 
-def typical_width(typical: float) -> float:
+def spacing(traits: npt.NDArray[Any]) -> float:
+    """Return how far bodies are apart, about where half of them are; 0 for a few or in a row."""
+    if len(traits) < FEW_MOVING:
+        return 0.0
+    positions = np.column_stack([traits["home_x"], traits["home_y"]])
+    low, high = np.quantile(positions, (0.25, 0.75), axis=0)
+    width, height = 2.0 * (high - low)
+    return float(np.sqrt(width * height / len(positions)))
+
+
+def typical_margin(typical: float, apart: float) -> float:
+    """Return the margin of the first box of a body of typical size.
+
+    Args:
+        typical: the size.
+        apart: how far the bodies are from each other.
+    """
+    return typical * max(TYPICAL_SHARE, min(MOST_SHARE, SPACING_SHARE * apart / typical))
+
+
+def typical_width(typical: float, margin: float) -> float:
     """Return the width of the box of a body of typical size."""
-    return 2.0 * typical * (1.0 + max(OWN_SHARE, TYPICAL_SHARE))
+    return 2.0 * (typical + max(OWN_SHARE * typical, margin))
 
 
 @kernel
@@ -70,7 +97,7 @@ def first_margin(world: WorldView, slot: int) -> float:
     if trait.boundless:
         return math.inf
     reach = _reach(shapes_of(world)[trait.collider])
-    return float(max(OWN_SHARE * reach, TYPICAL_SHARE * header_of(world).typical))
+    return float(max(OWN_SHARE * reach, header_of(world).margin))
 
 
 @kernel
@@ -84,7 +111,7 @@ def next_margin(world: WorldView, slot: int) -> float:
     first = first_margin(world, slot)
     if is_crowded:
         margin *= 0.75
-    elif plan.near < LONELY:
+    elif plan.near < plan.fixed + LONELY and plan.fixed < FEW_FIXED:
         margin *= 1.25
     return max(LEAST_SHARE * first, min(MOST_SHARE * first, margin))
 
@@ -102,7 +129,7 @@ def margin_after_hit(world: WorldView, slot: int) -> float:
 @kernel
 def _is_crowded(plan: PlanRecord) -> bool:
     """Return whether a body may meet many others before it leaves its box."""
-    return bool(plan.near > CROWDED or plan.near == TOO_MANY)
+    return bool(plan.near > plan.fixed + CROWDED or plan.near == TOO_MANY)
 
 
 @kernel
@@ -170,7 +197,7 @@ def fit_shown(world: WorldView) -> None:
         return
     if grid_of(world).ready == 0:
         fit_all(world, clock.time, clock.time_low)
-    if clock.planned:
+    if clock.planned == PLANNED:
         return
     shown = shown_of(world)
     for slot in range(shown.shape[0]):
@@ -207,19 +234,25 @@ def _time_to_pass(offset: float, velocity: float, margin: float) -> float:
 
 
 @kernel
-def enter_static(workspace: Block) -> None:
-    """Put all static bodies that have bounds into their tree."""
+def enter_static(world: WorldView, body: int) -> None:
+    """Put a static body that has bounds into the tree."""
+    trait, node = traits_of(world)[body], static_nodes_of(world)[body]
+    shape = shapes_of(world)[trait.collider]
+    room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
+    node.lower_x = (trait.home_x + shape.lower_x) - room
+    node.lower_y = (trait.home_y + shape.lower_y) - room
+    node.upper_x = (trait.home_x + shape.upper_x) + room
+    node.upper_y = (trait.home_y + shape.upper_y) + room
+    insert_leaf(static_tree_of(world), static_nodes_of(world), body)
+
+
+@kernel
+def enter_all_static(workspace: Block) -> None:
+    """Put all static bodies that have bounds into their tree, in order."""
     world = open_world(workspace, workspace, workspace)
-    nodes, traits, shapes = static_nodes_of(world), traits_of(world), shapes_of(world)
-    clear_tree(static_tree_of(world), nodes)
+    traits, entries = traits_of(world), entries_of(world)
+    clear_tree(static_tree_of(world), static_nodes_of(world))
     for body in range(traits.shape[0]):
         trait = traits[body]
-        if trait.slot != NO_ONE or trait.boundless:
-            continue
-        shape, node = shapes[trait.collider], nodes[body]
-        room = ROUNDING * (abs(trait.home_x) + abs(trait.home_y) + _reach(shape))
-        node.lower_x = (trait.home_x + shape.lower_x) - room
-        node.lower_y = (trait.home_y + shape.lower_y) - room
-        node.upper_x = (trait.home_x + shape.upper_x) + room
-        node.upper_y = (trait.home_y + shape.upper_y) + room
-        insert_leaf(static_tree_of(world), nodes, body)
+        if entries[body].state == ON and trait.slot == NO_ONE and not trait.boundless:
+            enter_static(world, body)

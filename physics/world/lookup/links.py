@@ -8,6 +8,8 @@ both lists change when one of the two gets another box. A body that may meet too
 is looked up each time.
 """
 
+import math
+
 from ...kernels import kernel
 from ..view import (
     LINKS,
@@ -42,6 +44,18 @@ def move_box(
     _link(world, slot, was_linked, old_x, old_y, old_upper_x, old_upper_y)
     plan.is_linked = 1
     enter_grid(world, slot)
+
+
+@kernel
+def leave_lists(world: WorldView, slot: int) -> None:
+    """Take a moving body out of the grid, and from all lists."""
+    plan = plans_of(world)[slot]
+    if plan.is_linked:
+        _unlink(world, slot, math.inf, math.inf, -math.inf, -math.inf)  # a box that touches none
+        leave_grid(world, slot)
+        plan.is_linked = 0
+    plan.near = TOO_MANY
+    plan.margin = -1.0  # it is in no box
 
 
 @kernel

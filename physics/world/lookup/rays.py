@@ -8,6 +8,7 @@ before the next ones. A body's box may reach out of its cell, and so the cells b
 import math
 
 from ...kernels import kernel
+from ...shapes.records import ShapeRecord
 from ..records import BoxRecord, Indices, RayRecord
 from ..view import (
     WorldView,
@@ -33,9 +34,22 @@ def entry(ray: RayRecord, box: BoxRecord) -> float:
 
     It is not after what the ray has met so far. It is never too late, in spite of rounding.
     """
-    room = ray.room + SPARE * (abs(box.lower_x) + abs(box.lower_y))
-    first_x, last_x = _passage(ray.x, ray.way_x, box.lower_x - room, box.upper_x + room)
-    first_y, last_y = _passage(ray.y, ray.way_y, box.lower_y - room, box.upper_y + room)
+    return _entry(ray, box.lower_x, box.lower_y, box.upper_x, box.upper_y)
+
+
+@kernel
+def passes_close(ray: RayRecord, shape: ShapeRecord, x: float, y: float) -> bool:
+    """Return whether a ray enters or grazes the bounding box of a shape at (x, y)."""
+    first = _entry(ray, x + shape.lower_x, y + shape.lower_y, x + shape.upper_x, y + shape.upper_y)
+    return first < math.inf
+
+
+@kernel
+def _entry(ray: RayRecord, lower_x: float, lower_y: float, upper_x: float, upper_y: float) -> float:
+    """Return what `entry` does, of a box that is given by its sides."""
+    room = ray.room + SPARE * (abs(lower_x) + abs(lower_y))
+    first_x, last_x = _passage(ray.x, ray.way_x, lower_x - room, upper_x + room)
+    first_y, last_y = _passage(ray.y, ray.way_y, lower_y - room, upper_y + room)
     first = max(0.0, max(first_x, first_y))
     last = min(limit(ray), min(last_x, last_y))
     return first if first <= last else math.inf
@@ -76,15 +90,31 @@ def next_leaf(world: WorldView, ray: RayRecord, waiting: int) -> tuple[int, int]
         waiting -= 1
         index = stack[waiting]
         node = nodes[index]
-        if entry(ray, node) == math.inf:
+        # It was met, but the ray may have met something before it since then.
+        if ray.fraction < math.inf and _node_entry(ray, node) == math.inf:
             continue
         if node.left == NO_ONE:
             return index, waiting
-        is_left_first = entry(ray, nodes[node.left]) <= entry(ray, nodes[node.right])
+        first, second = _node_entry(ray, nodes[node.left]), _node_entry(ray, nodes[node.right])
+        is_left_first = first <= second
         stack[waiting] = node.right if is_left_first else node.left
-        stack[waiting + 1] = node.left if is_left_first else node.right
-        waiting += 2
+        waiting += max(first, second) < math.inf
+        stack[waiting] = node.left if is_left_first else node.right
+        waiting += min(first, second) < math.inf
     return NO_ONE, 0
+
+
+@kernel
+def _node_entry(ray: RayRecord, node: BoxRecord) -> float:
+    """Return what `entry` does, of a node of the tree: without branches, and without divisions."""
+    room = ray.room + SPARE * (abs(node.lower_x) + abs(node.lower_y))
+    one_x = (node.lower_x - room - ray.x) * ray.inverse_x
+    other_x = (node.upper_x + room - ray.x) * ray.inverse_x
+    one_y = (node.lower_y - room - ray.y) * ray.inverse_y
+    other_y = (node.upper_y + room - ray.y) * ray.inverse_y
+    first = max(0.0, max(min(one_x, other_x), min(one_y, other_y)))
+    last = min(limit(ray), min(max(one_x, other_x), max(one_y, other_y)))
+    return first if first <= last else math.inf
 
 
 @kernel

@@ -4,7 +4,7 @@ from ...kernels import kernel
 from ..clock_time import elapsed, later
 from ..courses import margins_of, motion_at
 from ..lookup.neighbours import find_near, sort_items
-from ..records import MEET
+from ..records import INDEX_BITS, INDEX_MASK, MEET
 from ..tournament import is_far_ahead, next_due
 from ..view import (
     WorldView,
@@ -55,7 +55,6 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
     """
     clear_group(world)
     plans, winners, pairs = plans_of(world), winners_of(world), stale_of(world)
-    bodies = traits_of(world).shape[0]
     pairs[0] = plans[slot].pair
     count = 1
     latest, latest_low = later(now, now_low, plans[slot].slack)
@@ -72,7 +71,8 @@ def gather_due(world: WorldView, slot: int, now: float, now_low: float) -> None:
     sort_items(pairs, count)
     for index in range(count):
         if index == 0 or pairs[index] != pairs[index - 1]:
-            _join_planned(world, pairs[index] // bodies, pairs[index] % bodies, now, now_low)
+            a, b = pairs[index] >> INDEX_BITS, pairs[index] & INDEX_MASK
+            _join_planned(world, a, b, now, now_low)
 
 
 @kernel
@@ -82,7 +82,9 @@ def _join_planned(world: WorldView, a: int, b: int, now: float, now_low: float) 
     for body in (a, b):
         # It needs a new plan, also if this turns out to be no hit.
         if traits[body].slot >= 0:
-            add_member(world, traits[body].slot)
+            index = add_member(world, traits[body].slot)
+            if index >= 0:
+                members_of(world)[index].due = 1
     slot = traits[a].slot
     if slot >= 0 and plans[slot].kind == MEET and plans[slot].partner == b:
         normal_x, normal_y = plans[slot].normal_x, plans[slot].normal_y

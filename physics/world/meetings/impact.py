@@ -1,9 +1,13 @@
-"""When two bodies of a world meet: as two shapes do, but for the seams of static bodies."""
+"""When two bodies of a world meet: as two shapes do, but for the seams of grounds.
+
+A ground is of static bodies, or of kinematic ones that move with one velocity.
+"""
 
 import math
 
 from ...kernels import kernel
-from ...pairs.seams import lies_along, time_at_end
+from ...pairs.results import NO_IMPACT
+from ...pairs.seams import lies_along, next_end
 from ...pairs.table import impact_between, may_touch
 from ..lookup.ground import is_ground
 from ..view import WorldView, edges_of, shapes_of, traits_of
@@ -20,7 +24,7 @@ def may_meet(
     ):
         return True
     # A point on the border of two bodies touches both, whatever rounding says.
-    return _may_have_seams(world, a, b) and _is_point(world, a)
+    return _may_have_seams(world, a, b) and (_is_point(world, a) or _is_point(world, b))
 
 
 @kernel
@@ -50,10 +54,43 @@ def impact_of(
     )
     if not _may_have_seams(world, a, b):
         return time, normal_x, normal_y
+    if traits[a].inverse_mass > 0.0:
+        return _on_ground(
+            world, a, b, dx, dy, ux, uy, duration, margin_x, margin_y, time, normal_x, normal_y
+        )
+    time, normal_x, normal_y = _on_ground(
+        world, b, a, -dx, -dy, -ux, -uy, duration, margin_x, margin_y, time, -normal_x, -normal_y
+    )
+    return time, -normal_x, -normal_y
+
+
+@kernel
+def _on_ground(
+    world: WorldView,
+    a: int,
+    b: int,
+    dx: float,
+    dy: float,
+    ux: float,
+    uy: float,
+    duration: float,
+    margin_x: float,
+    margin_y: float,
+    time: float,
+    normal_x: float,
+    normal_y: float,
+) -> tuple[float, float, float]:
+    """Return the impact of body a and body b, which has no mass, if they meet at a seam of b.
+
+    Otherwise it is (time, normal_x, normal_y), as of two shapes; the other arguments are those of
+    `impact_of`.
+    """
     if time == math.inf:
         if not _is_point(world, a):
             return time, normal_x, normal_y
-    elif lies_along(shapes, edges, other, normal_x, normal_y):
+    elif lies_along(
+        shapes_of(world), edges_of(world), traits_of(world)[b].collider, normal_x, normal_y
+    ):
         return time, normal_x, normal_y
     at_seam, seam_x, seam_y = _meet_seam(world, a, b, dx, dy, ux, uy, duration, margin_x, margin_y)
     if at_seam < math.inf:
@@ -63,9 +100,10 @@ def impact_of(
 
 @kernel
 def _may_have_seams(world: WorldView, a: int, b: int) -> bool:
-    """Return whether b is static, and both are solid."""
+    """Return whether one of two bodies has no mass, and both are solid."""
     one, other = traits_of(world)[a], traits_of(world)[b]
-    return bool(other.slot < 0 and one.sensor < 0 and other.sensor < 0)
+    has_ground = one.inverse_mass == 0.0 or other.inverse_mass == 0.0
+    return bool(has_ground and one.sensor < 0 and other.sensor < 0)
 
 
 @kernel
@@ -94,25 +132,12 @@ def _meet_seam(
     """
     shapes, edges = shapes_of(world), edges_of(world)
     own, trait = traits_of(world)[a], traits_of(world)[b]
-    shape = shapes[trait.collider]
-    for number in range(shape.first, shape.first + shape.count):
-        for side in range(-1, 2, 2):
-            time, x, y = time_at_end(
-                shapes,
-                edges,
-                own.collider,
-                trait.collider,
-                number,
-                side,
-                dx,
-                dy,
-                ux,
-                uy,
-                margin_x,
-                margin_y,
-            )
-            if time == math.inf or time > duration:
-                continue
-            if is_ground(world, own, b, trait.home_x + x, trait.home_y + y):
-                return time, -edges[number].normal_x, -edges[number].normal_y
-    return math.inf, 0.0, 0.0
+    one, other = own.collider, trait.collider
+    tried, number = 0, 0
+    while number >= 0:
+        tried, number, time, x, y = next_end(
+            shapes, edges, one, other, tried, dx, dy, ux, uy, duration, margin_x, margin_y
+        )
+        if number >= 0 and is_ground(world, own, b, x, y):
+            return time, -edges[number].normal_x, -edges[number].normal_y
+    return NO_IMPACT

@@ -12,7 +12,7 @@ from ..view import (
     touches_of,
     traits_of,
 )
-from .touches import add_member
+from .touches import add_member, list_touch
 
 
 @kernel
@@ -26,20 +26,23 @@ def sort_group(world: WorldView) -> None:
         touch.one = places[traits[touch.a].slot] - 1
         if touch.other >= 0:
             touch.other = places[traits[touch.b].slot] - 1
+        list_touch(world, index)
 
 
 @kernel
 def _sort_members(world: WorldView) -> None:
-    """Let the members join again, in the order of their slots."""
-    progress, members, slots = progress_of(world), members_of(world), stale_of(world)
-    count = progress.members
+    """Let the members join again, in the order of their bodies."""
+    progress, members, bodies = progress_of(world), members_of(world), stale_of(world)
+    traits, count = traits_of(world), progress.members
     for index in range(count):
-        slots[index] = traits_of(world)[members[index].body].slot
-        places_of(world)[slots[index]] = 0
-    sort_items(slots, count)
+        body = members[index].body
+        bodies[index] = 2 * body + members[index].due
+        places_of(world)[traits[body].slot] = 0
+    sort_items(bodies, count)
     progress.members = 0
     for index in range(count):
-        member = members[add_member(world, slots[index])]
+        member = members[add_member(world, traits[bodies[index] // 2].slot)]
+        member.due = bodies[index] % 2
         # All have been tested with the velocities that they have.
         member.seen = 1
         member.seen_vx, member.seen_vy = member.vx, member.vy

@@ -23,9 +23,6 @@ from .pair import turn_velocity
 from .passing import slowest_hit
 from .solver import group_speed, inverse_masses, lacking, resolve
 
-# A group begins with the body whose meeting is due and, if it moves, its partner.
-FIRST_TWO = 2
-
 
 @kernel
 def meet_together(
@@ -80,7 +77,9 @@ def _move_on(
         member = members[index]
         slot = traits_of(world)[member.body].slot
         motion = motions_of(world)[slot]
-        if member.met > 0 and member.inverse_mass > 0.0:
+        # If nothing comes of a meeting, its bodies begin new courses all the same: the old ones say
+        # that they still have to meet.
+        if (member.met > 0 or member.due) and member.inverse_mass > 0.0:
             count = leave_sensors(world, hits, count, world_index, member.body, now, now_low)
             move_to(world, member.body, now, now_low)
             rest_x, rest_y = exactness * member.turn_x, exactness * member.turn_y
@@ -160,7 +159,7 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
         if members[index].inverse_mass > 0.0:
             # For those who had planned it, a meeting counts even if nothing came of it: each one
             # brings a body closer to `max_hits`, so a step ends.
-            for _ in range(max(members[index].met, 1 if index < FIRST_TWO else 0)):
+            for _ in range(max(members[index].met, members[index].due)):
                 count_hit(world, slot, is_short)
             if members[index].rests:
                 count_rest(world, slot)
@@ -169,7 +168,7 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
         if members[index].inverse_mass == 0.0:
             continue
         slot = traits[members[index].body].slot
-        if members[index].met > 0 or plans_of(world)[slot].stage == HELD:
+        if members[index].met > 0 or members[index].due or plans_of(world)[slot].stage == HELD:
             count = find_stale(world, slot, count)
             shrink_box(world, slot, now, now_low)
     for index in range(progress.members):

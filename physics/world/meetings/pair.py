@@ -5,18 +5,19 @@ import math
 from ...kernels import kernel
 from ...pairs.response import bounce_velocities
 from ...tolerances import MOST_AT_ONCE, NO_TURN
+from ..courses import velocity_of
 from ..lookup.overrides import find_override
 from ..records import INERT
-from ..view import WorldView, motions_of, overrides_of, plans_of, progress_of, traits_of
+from ..view import (
+    WorldView,
+    entries_of,
+    motions_of,
+    overrides_of,
+    plans_of,
+    progress_of,
+    traits_of,
+)
 from .passing import has_reached, inverse_mass_of
-
-
-@kernel
-def velocity_of(world: WorldView, slot: int) -> tuple[float, float]:
-    """Return the velocity of the body with this slot; a static body (-1) has none."""
-    if slot < 0:
-        return 0.0, 0.0
-    return motions_of(world)[slot].vx, motions_of(world)[slot].vy
 
 
 @kernel
@@ -44,7 +45,10 @@ def restitution_of(world: WorldView, a: int, b: int) -> float:
     It is 0 if none of the two may bounce any more in this step, or loses speed at each of too many
     hits at the same time.
     """
-    restitution = find_override(overrides_of(world), min(a, b), max(a, b))
+    overrides, restitution = overrides_of(world), math.nan
+    if overrides.shape[0] > 0:
+        one, other = entries_of(world)[a].handle, entries_of(world)[b].handle
+        restitution = find_override(overrides, min(one, other), max(one, other))
     if math.isnan(restitution):
         restitution = float(traits_of(world)[a].restitution * traits_of(world)[b].restitution)
     if progress_of(world).inert:

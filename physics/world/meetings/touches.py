@@ -5,7 +5,9 @@ import math
 from ...kernels import kernel
 from ...pairs.response import shares
 from ...pairs.touching import margin_along
-from ..courses import margins_of, motion_at
+from ..courses import margins_of, motion_at, velocity_of
+from ..lookup.ground import move_as_one
+from ..lookup.tree import NO_ONE
 from ..view import (
     WorldView,
     members_of,
@@ -16,13 +18,14 @@ from ..view import (
     traits_of,
 )
 from .impact import impact_of, may_meet
-from .pair import restitution_of, velocity_of
+from .pair import restitution_of
 from .passing import inverse_mass_of, passes_by, slowest_hit
 from .ties import is_straighter
 
 # How far two bodies may be apart that are tested, in units of what counts as touching. Those that
 # pass each other closely need some way to touch.
 _WAY = 1e4
+NONE = -1  # no touch
 
 
 @kernel
@@ -56,7 +59,8 @@ def add_member(world: WorldView, slot: int) -> int:
     member.old_vx = member.vx = vx
     member.old_vy = member.vy = vy
     member.seen = 0
-    member.met = member.rests = 0
+    member.met = member.rests = member.due = 0
+    member.first = member.last = NONE
     return index
 
 
@@ -74,12 +78,35 @@ def velocities_of(world: WorldView, body: int) -> tuple[float, float, float, flo
 @kernel
 def are_joined(world: WorldView, a: int, b: int) -> bool:
     """Return whether there is a touch of two bodies."""
+    return _is_listed(world, a, b) or _is_listed(world, b, a)
+
+
+@kernel
+def _is_listed(world: WorldView, a: int, b: int) -> bool:
+    """Return whether there is a touch of which body a is the first one, and b the other."""
+    slot = traits_of(world)[a].slot
+    if slot < 0 or places_of(world)[slot] == 0:
+        return False
     touches = touches_of(world)
-    for index in range(progress_of(world).touches):
-        touch = touches[index]
-        if (touch.a == a and touch.b == b) or (touch.a == b and touch.b == a):
+    index = members_of(world)[places_of(world)[slot] - 1].first
+    while index != NONE:
+        if touches[index].b == b:
             return True
+        index = touches[index].next
     return False
+
+
+@kernel
+def list_touch(world: WorldView, index: int) -> None:
+    """Append a touch to the list of its first member."""
+    touches = touches_of(world)
+    member = members_of(world)[touches[index].one]
+    touches[index].next = NONE
+    if member.first == NONE:
+        member.first = index
+    else:
+        touches[member.last].next = index
+    member.last = index
 
 
 @kernel
@@ -119,7 +146,7 @@ def join(
         if approach < -least and progress.elastic:
             return False
     aim = restitution * max(approach, 0.0)
-    if traits_of(world)[b].slot < 0 and _is_same_wall(
+    if traits_of(world)[b].inverse_mass == 0.0 and _is_same_wall(
         world, a, b, normal_x, normal_y, restitution, aim, now, now_low
     ):
         return False
@@ -163,6 +190,7 @@ def append(
     touch.share_a, touch.share_b = shares(inverse_mass_a, inverse_mass_b)
     touch.restitution, touch.aim = restitution, aim
     touch.change = 0.0
+    list_touch(world, progress.touches - 1)
     return True
 
 
@@ -212,14 +240,14 @@ def _is_same_wall(
     now: float,
     now_low: float,
 ) -> bool:
-    """Return whether a body touches another static body that is one wall with b, as at a seam.
+    """Return whether a body touches another body that is one wall with b, as at a seam.
 
     Then it would not hit the one if it slid along the other. Of two that are so, the one that is
     met more along a face stays.
     """
     for index in range(progress_of(world).touches):
         touch = touches_of(world)[index]
-        if touch.a != a or touch.other >= 0:
+        if touch.a != a or not move_as_one(world, touch.b, b):
             continue
         is_behind = not _hits_along(world, a, b, touch.normal_x, touch.normal_y, now, now_low)
         is_before = not _hits_along(world, a, touch.b, normal_x, normal_y, now, now_low)
@@ -237,7 +265,12 @@ def _is_same_wall(
                 now_low,
             )
         if is_before and touch.change == 0.0:
-            touch.b = b
+            other = NO_ONE
+            if traits_of(world)[b].slot >= 0:
+                other = add_member(world, traits_of(world)[b].slot)
+                if other < 0:
+                    return True
+            touch.b, touch.other = b, other
             touch.normal_x, touch.normal_y = normal_x, normal_y
             touch.restitution, touch.aim = restitution, aim
             return True
@@ -250,9 +283,10 @@ def _is_same_wall(
 def _hits_along(
     world: WorldView, a: int, b: int, normal_x: float, normal_y: float, now: float, now_low: float
 ) -> bool:
-    """Return whether a body hits a static one, b, if it slides along a face with a normal."""
+    """Return whether a body hits another one without mass, b, if it slides along a face of it."""
     x, y, vx, vy = motion_at(world, a, now, now_low)
-    their_x, their_y, _, _ = motion_at(world, b, now, now_low)
+    their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
+    vx, vy = vx - their_vx, vy - their_vy
     margin_x, margin_y = margins_of(world, a, b, x, y, their_x, their_y)
     along = vx * normal_x + vy * normal_y
     ux, uy = along * normal_x - vx, along * normal_y - vy

@@ -6,6 +6,8 @@ Every module holds one class, and all classes are used in the same way::
     contacts = engine.run(steps)  # contacts that began; 0 unless count is set
     positions, velocities = engine.state()  # float64 [n, 2]; velocities in units per step
 
+A `Sandbox` is a world that changes while it runs, for the scenes of ``sandboxes.py``.
+
 ``accurate`` chooses between two settings of a peer, which were found by trial (each class names
 them): the fastest, and the one that conserves energy best. Counting costs the peers a callback or a
 list per contact. So speeds are measured without it, and a second run counts.
@@ -17,6 +19,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from .sandbox import Sandbox
 from .scene import Scene
 
 # The name of each peer: its package, and its module here.
@@ -41,12 +44,20 @@ class Engine(Protocol):
 
 def installed_peers() -> dict[str, type[Engine] | None]:
     """Return the class of each peer by its name; None for a peer that is not installed."""
-    return {name: peer(package, module) for name, (package, module) in PEERS.items()}
+    return {name: peer(package, module, "ENGINE") for name, (package, module) in PEERS.items()}
 
 
-def peer(package: str, module: str) -> Any:
+def installed_sandboxes() -> dict[str, type[Sandbox] | None]:
+    """Return the sandbox of each peer by its name; None for a peer that is not installed."""
+    return {
+        name: peer(package, f"{module.removesuffix('_engine')}_sandbox", "SANDBOX")
+        for name, (package, module) in PEERS.items()
+    }
+
+
+def peer(package: str, module: str, name: str) -> Any:
     try:
         importlib.import_module(package)
     except ImportError:
         return None
-    return importlib.import_module(f".{module}", __name__).ENGINE
+    return getattr(importlib.import_module(f".{module}", __name__), name)

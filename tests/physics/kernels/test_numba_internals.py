@@ -34,6 +34,13 @@ def test_setting_exists(name: str) -> None:
     expect(hasattr(numba.config, name), f"config.{name}", "compiler_state")
 
 
+def test_code_for_one_signature_turns_its_arguments_into_numbers() -> None:
+    code = numba_internals.entry_for(numba.njit(double), ("int64",))
+    expect(code(np.int32(3)) == 6, "Dispatcher.compile", "entry_for")
+    with pytest.raises(TypeError):
+        code(None)
+
+
 def test_cache_dir_decides_where_a_cache_is_made(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

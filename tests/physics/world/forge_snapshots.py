@@ -23,12 +23,12 @@ from arkanoid.physics import (
     World,
     WorldBatch,
 )
-from arkanoid.physics.world.records import Clock
-from arkanoid.physics.world.states import Kept
+from arkanoid.physics.world.living.snapshots import Head, Kept
+from arkanoid.physics.world.records import Clock, Entry, Hit, Override, Trait
 from helpers.bodies import SMALL_SHAPES, room
 from helpers.forging import forge, opened, sealed_again
 
-DIGEST = 16  # bytes before the states
+DIGEST = 16  # bytes
 SECONDS = 60  # in which one of them is stepped, or it hangs
 
 
@@ -51,21 +51,50 @@ def make_world(bodies: int, continuous: bool = True) -> World:
     return world
 
 
-def tables(world: World, content: bytearray, worlds: int) -> list[Any]:
+def tables(content: bytearray) -> list[Any]:
     """Return the parts of a snapshot's content as writable arrays of records, [n]."""
-    movers = int(world.built().setup.header.movers)
-    index = np.dtype([("count", np.int64)])
-    pair = np.dtype([("sensor", np.int64), ("body", np.int64)])
     parts: list[Any] = []
-    at = DIGEST
-    for dtype, count in ((Clock, worlds), (Kept, worlds * movers), (index, worlds)):
-        parts.append(np.frombuffer(content, dtype, count, at))
-        at += dtype.itemsize * count
-    pairs = np.frombuffer(content, pair, -1, at)
-    kept = parts[1]
-    flat = [kept[name] for name in ("shown", "after_step", "motion")]
-    rest = kept[["at", "at_low", "fresh"]]
-    return [part for part in (parts[0], *flat, rest, parts[2], pairs) if len(part)]
+    at = 0
+
+    def take(dtype: Any, count: Any) -> Any:
+        nonlocal at
+        part = np.frombuffer(content, dtype, int(count), at)
+        at += part.nbytes
+        parts.append(part)
+        return part
+
+    index = np.dtype([("count", np.int64)])
+    pair = np.dtype([("sensor", np.int64), ("body", np.int64), ("moved", np.int64)])
+    worlds, setups = take(index, 2)["count"].tolist()
+    movers = []
+    for _ in range(setups):
+        head = take(Head, 1)[0]
+        at += DIGEST
+        take(Trait, head["bodies"])
+        take(Entry, head["bodies"])
+        take(Override, head["overrides"])
+        movers.append(head["movers"])
+    which = take(index, worlds)["count"]
+    take(Clock, worlds)
+    for number in which:
+        kept = take(Kept, movers[number])
+        parts += [kept[name] for name in ("shown", "shown_after_step", "motions")]
+        del parts[-4]  # the records of records
+    counts = take(index, 2 * worlds)["count"].reshape(-1, 2)
+    for count in counts[:, 0]:
+        take(pair, count)
+    for count in counts[:, 1]:
+        take(Hit, count)
+    return [part for part in parts if len(part)]
+
+
+def edit(world: World, rng: np.random.Generator) -> None:
+    """Remove a body, change one, and add one."""
+    world.remove(int(rng.choice(world.handles[4:])))
+    handle = int(rng.choice(world.handles[4:]))
+    world.change(handle, mass=2.0, active=bool(rng.random() < 0.7), category=3)
+    world.set_restitution(handle, int(world.handles[0]), 0.5)
+    world.add(Body(SMALL_SHAPES[0], rng.uniform(1, 9, 2), rng.normal(size=2), 1.0))
 
 
 def main() -> None:
@@ -75,20 +104,21 @@ def main() -> None:
     warnings.simplefilter("ignore", HitLimitWarning)
     refused = accepted = stopped = 0
     makers = [make_world(4), make_world(24), make_world(24, False), WorldBatch(make_world(12), 3)]
-    template = make_world(12)
     for maker in makers:
-        batch = isinstance(maker, WorldBatch)
-        world, worlds = (template, 3) if batch else (maker, 1)
+        worlds = list(maker) if isinstance(maker, WorldBatch) else [maker]
         snapshots = []
         for _ in range(30):
+            edit(worlds[rng.integers(len(worlds))], rng)
             maker.step(0.25, int(rng.integers(1, 4)))
+            if rng.random() < 0.5:
+                edit(worlds[0], rng)
             snapshots.append(maker.snapshot())
             maker.restore(snapshots[-1])
         for _ in range(count // len(makers)):
             faulthandler.dump_traceback_later(SECONDS, exit=True)
             snapshot = snapshots[rng.integers(len(snapshots))]
             content = opened(snapshot)
-            parts = tables(world, content, worlds)
+            parts = tables(content)
             names = []
             for _ in range(int(rng.choice([1, 1, 2, 4]))):
                 part = parts[rng.integers(len(parts))]

@@ -10,7 +10,7 @@ from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World
 from arkanoid.physics.world.lookup.neighbours import TOO_MANY
 from arkanoid.physics.world.lookup.overrides import find_override, override_table
 from arkanoid.physics.world.lookup.tree import clear_tree, find_leaves, insert_leaf, remove_leaf
-from arkanoid.physics.world.records import Box, Node, Plan, Tree
+from arkanoid.physics.world.records import Box, Entry, Node, Plan, Trait, Tree
 from arkanoid.physics.world.view import LINKS, STACK
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -35,14 +35,12 @@ def crowd(count: int, radii: tuple[float, ...], speed: float = 1.0) -> list[Body
 
 
 def plans_of(world: World) -> Any:
-    built = world.built()
-    return built.setup.records(built.states, "plans", Plan)[0]
+    return world.site.setup.records(world.site.state, "plans", Plan)
 
 
 def touching(world: World) -> npt.NDArray[np.bool_]:
     """Return whose boxes touch or overlap, bool [movers, movers]; no body touches itself."""
-    built = world.built()
-    boxes = built.setup.records(built.states, "boxes", Box)[0]
+    boxes = world.site.setup.records(world.site.state, "boxes", Box)
     lower = np.stack([boxes["lower_x"], boxes["lower_y"]], axis=1)
     upper = np.stack([boxes["upper_x"], boxes["upper_y"]], axis=1)
     both = ((lower[:, None] <= upper) & (lower <= upper[:, None])).all(axis=2)
@@ -121,10 +119,8 @@ def test_lists_hold_the_bodies_whose_boxes_touch(seed: int, radii: tuple[float, 
         for body in rng.choice(60, 3).tolist():
             world.place(body, rng.uniform(-2, 12, 2), rng.normal(size=2))
         world.step(float(rng.choice([0.0, 0.1, 1.0])))
-        built = world.built()
-        links = built.setup.records(built.states, "links", np.dtype([("bodies", np.int64, LINKS)]))[
-            0
-        ]
+        list_type = np.dtype([("bodies", np.int64, LINKS)])
+        links = world.site.setup.records(world.site.state, "links", list_type)
         due = touching(world)
         for slot, plan in enumerate(plans_of(world)):
             if plan["near"] != TOO_MANY:
@@ -173,7 +169,7 @@ def test_a_body_of_any_speed_leaves_few_boxes(speed: float) -> None:
     st.integers(0, 10**6),
 )
 def test_restitutions_of_pairs_are_found(pairs: dict[tuple[int, int], float], seed: int) -> None:
-    table = override_table(pairs)
+    table = override_table((*pair, pairs[pair]) for pair in pairs)
     for (low, high), restitution in pairs.items():
         assert find_override(table, low, high) == restitution
     rng = np.random.default_rng(seed)
@@ -192,8 +188,28 @@ def test_sensors_cost_what_is_inside() -> None:
     for index in range(200):
         world.add(Body(AxisAlignedRectangle(0.5, 0.5), (index, -5)), sensor=True)
     world.step(0.0)
-    assert len(world.snapshot()) == plain
-    zone = world.add(Body(AxisAlignedRectangle(1, 1), world.positions[150]), sensor=True)
+    of_bodies = 200 * (Trait.itemsize + Entry.itemsize)
+    assert len(world.snapshot()) == plain + of_bodies
+    world.change(499, active=False)
+    world.place(499, world.positions[150])
+    before = len(world.snapshot())
+    world.change(499, active=True)
     entered = world.step(0.0)
-    assert set(entered["b"]) == {zone}
-    assert len(world.snapshot()) == plain + 16 * len(entered)
+    assert set(entered["b"]) == {499}
+    assert len(world.snapshot()) == before + 24 * len(entered)
+
+
+def test_queries_before_the_first_step_find_the_same_when_cells_change() -> None:
+    """The cells were chosen again, to suit the bodies, but the grid kept those from before.
+
+    They depend on how far bodies are apart: also on those that are off, and not in the grid.
+    """
+    places = [(10 * (index % 5), 10 * (index // 5)) for index in range(25)]
+    world = World([Body(Particle(1), place, (1, 0), 1) for place in places])
+    others = [world.add(Body(Particle(1), (20, 20))) for _ in range(50)]
+    for other in others:
+        world.change(other, active=False)
+    for far in (20, 1e4):
+        for index, other in enumerate(others):
+            world.place(other, (far * (index % 7), far * (index // 7)))
+        assert [world.query_point(place).tolist() for place in places] == [[i] for i in range(25)]

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from arkanoid.physics import Body, Particle, World, WorldBatch
-from arkanoid.physics.world.states import Stepper
+from arkanoid.physics.world import states
 
 
 def make_world() -> World:
@@ -21,18 +21,23 @@ def step_while_others_call(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Step a world; in the middle of it, another thread attempts each of the calls."""
-    plain = Stepper.step
+    plain = states.compiled_step()
 
-    def meddle(stepper: Stepper, dt: float, steps: int) -> Any:
+    def meddle(address: int, count: int, dt: float, steps: int) -> Any:
         for call in calls:
             thread = threading.Thread(target=attempt, args=(call,))
             thread.start()
             thread.join()
-        return plain(stepper, dt, steps)
+        return plain(address, count, dt, steps)
 
-    monkeypatch.setattr(Stepper, "step", meddle)
+    monkeypatch.setattr(states, "compiled_step", lambda: meddle)
+    sites = [each.site for each in (world if isinstance(world, WorldBatch) else [world])]
+    for site in sites:
+        site.halt()
     world.step(1.0)
     monkeypatch.undo()
+    for site in sites:
+        site.halt()
 
 
 @pytest.mark.parametrize("threads", [0, 1, 2])
@@ -67,9 +72,11 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
     """An edit gave up what the step wrote, and a question used the same memory."""
     world = make_world()
     world.add(Body(Particle(1.0), (9.0, 0.0)))
+    third = world.add(Body(Particle(1.0), (99.0, 0.0)))
     calls: list[Callable[[], Any]] = [
         lambda: world.add(Body(Particle(1.0))),
-        lambda: world.remove(0),
+        lambda: world.remove(third),
+        lambda: world.change(0, mass=2.0),
         lambda: world.body(0),
         lambda: world.place(0, (5.0, 5.0)),
         lambda: world.place(1, position=(5.0, 5.0)),
@@ -93,7 +100,7 @@ def test_questions_and_edits_are_refused_while_a_step_runs(
     step_while_others_call(world, calls, attempt, monkeypatch)
     assert len(errors) == len(calls)
     assert all("one thread at a time" in error for error in errors)
-    assert world.positions.tolist() == [[1.0, 0.0], [9.0, 0.0]]
+    assert world.positions.tolist() == [[1.0, 0.0], [9.0, 0.0], [99.0, 0.0]]
     for call in calls:
         call()
 

@@ -24,9 +24,10 @@ from arkanoid.physics import (
     detect,
     time_of_impact,
 )
+from arkanoid.physics.tolerances import MOST_AT_ONCE
 from arkanoid.physics.world import setup
 from helpers.bodies import bodies_of, deepest_overlap
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 Rng = np.random.Generator
@@ -146,15 +147,23 @@ def test_the_broad_phase_changes_no_bit(
     bodies.append(Body(AxisAlignedRectangle(300, 6), (0, -30), (0, 4), mass=1e3))
     followed = World(bodies)
     hits = [followed.step(28.0 / parts) for _ in range(parts)]
-    monkeypatch.setattr(setup, "_have_bounds", lambda sizes: np.zeros(len(sizes), bool))
+    monkeypatch.setattr(setup, "have_bounds", lambda shapes: np.zeros(len(shapes), bool))
     tested = World(bodies)
     expected = tested.step(28.0)
-    assert followed.built().setup.traits["boundless"].sum() == 0
-    assert tested.built().setup.traits["boundless"].all()
+    assert followed.site.setup.traits["boundless"].sum() == 0
+    assert tested.site.setup.traits["boundless"][: len(bodies)].all()
     assert len(expected) > 50
     assert np.concatenate(hits).tobytes() == expected.tobytes()
     if parts == 1:
         assert followed.positions.tobytes() == tested.positions.tobytes()
+
+
+def is_squeezed(hits: Any) -> bool:
+    """Return whether a body has many hits at practically one time."""
+    times = np.concatenate([hits["time"], hits["time"]]).round(6)
+    bodies = np.concatenate([hits["a"], hits["b"]])
+    _, counts = np.unique(np.column_stack([times, bodies]), axis=0, return_counts=True)
+    return bool(counts.max(initial=0) > MOST_AT_ONCE // 2)
 
 
 @settings(max_examples=25, deadline=None)
@@ -174,6 +183,8 @@ def test_neither_position_nor_grid_nor_order_matters(seed: int, change: str) -> 
         names.reverse()
     other = World(bodies)
     expected, hits = plain.step(1.5), other.step(1.5)
+    # Where a body is squeezed, rounding decides when its last bounce is.
+    assume(not is_squeezed(expected))
     pairs = [tuple(sorted((names[a], names[b]))) for a, b in hits[["a", "b"]].tolist()]
     assert pairs == expected[["a", "b"]].tolist()
     np.testing.assert_allclose(hits["time"], expected["time"], rtol=0, atol=1e-8)

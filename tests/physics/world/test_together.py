@@ -159,7 +159,7 @@ def test_what_meets_at_once_is_the_same_whoever_planned_it(
     bodies.append(Body(Particle(0.5), (-5, 0.5), (3, 0), 2, restitution))
     followed, restored = World(bodies), World(bodies)
     hits = [followed.step(0.25) for _ in range(8)]
-    monkeypatch.setattr(setup, "_have_bounds", lambda sizes: np.zeros(len(sizes), bool))
+    monkeypatch.setattr(setup, "have_bounds", lambda shapes: np.zeros(len(shapes), bool))
     tested = World(bodies)
     expected = np.concatenate([tested.step(0.25) for _ in range(8)])
     monkeypatch.undo()

@@ -1,5 +1,6 @@
 """The world as an object: what goes in, what comes out, and how it is edited."""
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -13,6 +14,7 @@ from arkanoid.physics import (
     AxisAlignedRectangle,
     Body,
     Hit,
+    NoBodyError,
     Particle,
     World,
 )
@@ -36,13 +38,15 @@ def random_world(seed: int, skip: int = -1) -> World:
         velocity = rng.normal(size=2) if solid and mass else (0, 0)
         options = {"sensor": not solid, "category": int(rng.integers(1, 8))}
         rows.append((Body(shapes[index % 5], place, velocity, mass, 0.9), options))
-    kept = [index for index in range(len(rows)) if index != skip]
     world = World()
-    for index in kept:
-        world.add(rows[index][0], **rows[index][1])
+    handles = {
+        index: world.add(body, **options)
+        for index, (body, options) in enumerate(rows)
+        if index != skip
+    }
     for a, b in rng.integers(4, len(rows), (40, 2)).tolist():
-        if a != b and a in kept and b in kept:
-            world.set_restitution(kept.index(a), kept.index(b), 0.25)
+        if a != b and a in handles and b in handles:
+            world.set_restitution(handles[a], handles[b], 0.25)
     return world
 
 
@@ -133,16 +137,20 @@ def test_positions_are_copies_that_cannot_be_written_to() -> None:
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**6), st.integers(4, 18))
 def test_a_removed_body_leaves_no_trace(seed: int, gone: int) -> None:
-    """Indices, overrides, sensors and masks all follow."""
+    """Overrides, sensors and masks are all as if it had never been there."""
     edited, never = random_world(seed), random_world(seed, skip=gone)
     edited.remove(gone)
     for _ in range(3):
-        assert same(edited.step(0.3), never.step(0.3))
+        hits, expected = edited.step(0.3), never.step(0.3)
+        for name in ("a", "b"):  # the others' handles stay
+            expected[name] += expected[name] >= gone
+        assert same(hits, expected)
     assert same(edited.positions, never.positions)
     assert same(edited.velocities, never.velocities)
 
 
-def test_bodies_inside_sensors_are_renumbered_after_a_removal() -> None:
+def test_handles_and_who_is_inside_a_sensor_outlive_a_removal() -> None:
+    """The indices of later bodies went down by one."""
     world = World([FLOOR])
     sensor = world.add(Body(AxisAlignedRectangle(2, 2), (0, 5)), sensor=True)
     ball = world.add(Body(Particle(0.1), (0, 5), (1, 0), mass=1))
@@ -150,12 +158,13 @@ def test_bodies_inside_sensors_are_renumbered_after_a_removal() -> None:
     world.remove(0)
     (left,) = world.step(1.0)
     assert left["kind"] == END
-    assert (left["a"], left["b"]) == (sensor - 1, ball - 1)
+    assert (left["a"], left["b"]) == (sensor, ball)
     assert left["time"] == pytest.approx(1.1, rel=1e-15)
 
 
-def test_a_removed_sensor_and_a_removed_guest_are_forgotten() -> None:
-    for gone in (0, 1):
+def test_a_removed_guest_and_the_guests_of_a_removed_sensor_leave() -> None:
+    """They were forgotten, without an event."""
+    for gone, pairs in ((0, [(0, 1), (0, 2)]), (1, [(0, 1)])):
         world = World()
         world.add(Body(AxisAlignedRectangle(2, 2)), sensor=True)
         world.add(Body(Particle(0.1), (0, 0), (1, 0), mass=1))
@@ -163,7 +172,10 @@ def test_a_removed_sensor_and_a_removed_guest_are_forgotten() -> None:
         assert len(world.step(0.1)) == 2
         world.remove(gone)
         hits = world.step(5.0)
-        assert hits["kind"].tolist() == ([] if gone == 0 else [END])
+        ends = hits[: len(pairs)]
+        assert hits["kind"].tolist() == [END] * (1 + (gone == 0) + (gone == 1))
+        assert ends[["a", "b"]].tolist() == pairs
+        assert (ends["time"] == 0.1).all()
         assert len(world) == 2
 
 
@@ -289,3 +301,52 @@ def test_a_pair_has_its_own_restitution_until_it_is_taken_back() -> None:
         world.set_restitution(0, 1, override)
         world.step(2.0)
         assert world.velocities[1, 1] == expected
+
+
+def test_several_bodies_are_asked_for_and_placed_as_each_alone() -> None:
+    """To write the velocities of a crowd, one call for each body took longer than the step."""
+    one, other = (World() for _ in range(2))
+    for world in (one, other):
+        for number in range(9):
+            mass = None if number % 3 == 0 else 1.0
+            world.add(Body(Particle(0.4), (float(number), 0.0), (0.0, 1.0 * (number == 0)), mass))
+        world.remove(4)
+        assert world.add(Body(Particle(0.4), (4.0, 0.0), mass=1.0)) not in range(9)
+        world.step(0.1)
+    chosen = one.handles[[7, 0, 3, 8, 4]]
+    assert one.position(chosen).tolist() == [one.position(handle).tolist() for handle in chosen]
+    assert one.velocity(chosen).tolist() == [one.velocity(handle).tolist() for handle in chosen]
+    velocities = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 2.0], [3.0, 0.5], [0.0, 0.0]])
+    one.place(chosen, velocity=velocities)
+    one.place(chosen[:2], velocities[:2] + 20.0)
+    one.place(chosen[2:4].tolist(), velocity=(0.5, 0.25))
+    for handle, velocity in zip(chosen.tolist(), velocities.tolist(), strict=True):
+        other.place(handle, velocity=velocity)
+    for handle, velocity in zip(chosen[:2].tolist(), velocities[:2].tolist(), strict=True):
+        other.place(handle, (velocity[0] + 20.0, velocity[1] + 20.0))
+    for handle in chosen[2:4].tolist():
+        other.place(handle, velocity=(0.5, 0.25))
+    assert one.step(0.5).tobytes() == other.step(0.5).tobytes()
+    assert one.snapshot() == other.snapshot()
+
+
+@pytest.mark.parametrize(
+    ("handles", "given", "error", "message"),
+    [
+        ([0, 5], {"velocity": (1.0, 0.0)}, NoBodyError, "no body 5"),
+        ([-1, 0], {"velocity": (1.0, 0.0)}, NoBodyError, "no body -1"),
+        ([0.0, 1.0], {"velocity": (1.0, 0.0)}, TypeError, "integers"),
+        ([[0, 1]], {"velocity": (1.0, 0.0)}, TypeError, "integers"),
+        ([0, 1], {"velocity": [(1.0, 0.0)] * 3}, ValueError, r"\[2, 2\]"),
+        ([0, 1], {"position": (math.nan, 0.0)}, ValueError, "finite"),
+        ([0, 1], {"position": (1.0, 0.0, 0.0)}, ValueError, "shape"),
+    ],
+)
+def test_several_bodies_are_checked_before_any_is_placed(
+    handles: Any, given: Any, error: type[Exception], message: str
+) -> None:
+    world = World([Body(Particle(1.0), (float(3 * number), 0.0), mass=1.0) for number in range(2)])
+    before = world.snapshot()
+    with pytest.raises(error, match=message):
+        world.place(handles, **given)
+    assert world.snapshot() == before
