@@ -27,7 +27,9 @@ _PARTS = {
     "replay": "Replay",
     "editor": "Editor",
     "collide": "Collide",
+    "world": "World",
 }
+_FOLDERS = ("modules", "collisions", "worlds")
 # Of `browser_games`: those that people play, and those that agents were trained in.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
@@ -64,7 +66,7 @@ def make_page(agents: Sequence[BrowserAgent], opens: str = "play") -> str:
             "opens": opens,
             "style": _read("style.css"),
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
-            "scene": _read("scene.html"),
+            "scene": _read("scene.html") + _read("arena.html"),
             "panels": "\n".join(map(_panel, _PARTS)),
             "imports": json.dumps({"imports": _imports()}),
             "data": "\n".join(_data(name, content) for name, content in data.items()),
@@ -97,7 +99,7 @@ def _panel(name: str) -> str:
 
 def _imports() -> dict[str, str]:
     """Return the address of each module, by its name."""
-    folders = (resources.files(machine_room), _HERE / "modules", _HERE / "collisions")
+    folders = (resources.files(machine_room), *(_HERE / name for name in _FOLDERS))
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _address(file)
         for folder in folders
