@@ -258,6 +258,7 @@ def _thin() -> list[Thing]:
 
 SCENES: dict[str, Scene] = {
     "shapes": Scene("All shapes", "Fling them. No energy appears.", _shapes()),
+    "empty": Scene("An empty room", "Throw things in.", room()),
     "cradle": Scene("Newton's cradle", "The speed passes on, ball by ball.", _cradle()),
     "three": Scene("A break of three", "Two balls are hit at once.", _three()),
     "billiards": Scene("Billiards", "The pockets are sensors.", _billiards()),

@@ -14,9 +14,7 @@ const COLLIDERS = [
 const LEAST = 0.1; // of a width, but a disc may be a point
 const MOST_GRAVITY = 100;
 
-/**
- * What a thing of each name in the tray is. A point is a disc without a radius.
- */
+/** What a thing of each name in the tray is. A point is a disc without a radius. */
 export const KINDS = {
   disc: { collider: "Particle" },
   point: { collider: "Particle", width: 0 },
