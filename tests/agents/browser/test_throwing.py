@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,11 @@ import numpy as np
 import pytest
 from arkanoid.physics.scenes.ready import SCENES, Thing, make_world, text_of
 from helpers.browser import DESKTOP, PHONE, visit, wait_until
+from helpers.repository import ROOT
 
 STILL = "#world?gravity=0&b=Particle,-4,0,0,0,1&b=AxisAlignedRectangle,4,0,0,0,2,2"
 THING = Thing._fields
+SITE = (ROOT / "docs" / "site" / "playable.py").read_text(encoding="utf-8")
 
 
 def open_world(browser: Any, file: Path, scene: str, **context: Any) -> Any:
@@ -178,6 +181,13 @@ def test_the_address_holds_the_world(world: Any, browser: Any, file: Path) -> No
     assert things(world) == before
 
 
+def test_the_site_links_to_scenes_that_there_are() -> None:
+    """Each figure of many bodies on the engine's page has one."""
+    names = re.findall(r'"\w+": "scene=(\w+)"', SITE)
+    assert len(names) == 2
+    assert set(names) <= set(SCENES)
+
+
 def test_odd_addresses(browser: Any, file: Path) -> None:
     """What makes no sense is as if it were missing."""
     for query in ("scene=none", "b=Blob,x,1e999,,,-3", "gravity=x&lamp=1", "b=Convex,0,0,0,0,-1"):
@@ -258,3 +268,18 @@ def test_the_lamp(browser: Any, file: Path) -> None:
         assert ray["fraction"] * ray["way_x"] == pytest.approx(7, abs=0.05)
         page.uncheck("#lamp")
         assert page.evaluate("arkanoid.part.lamp") is None
+
+
+def test_too_many_inside_sensors(browser: Any, file: Path) -> None:
+    """A sentence says so; the world waits as it began, and goes on without the sensors."""
+    discs = [Thing(x=i % 40 / 2 - 9.75, y=i // 40 / 2 - 6, width=0.1) for i in range(1000)]
+    sensors = [Thing("AxisAlignedRectangle", width=40, height=30, mass=0, sensor=1)] * 5
+    query = "&".join(f"b={text_of(thing)}" for thing in [*discs, *sensors])
+    with open_world(browser, file, f"#world?{query}") as page:
+        wait_until(page, "part.live && !part.runs")
+        assert "sensors" in page.locator("#world-fault").text_content()
+        page.evaluate(
+            "arkanoid.part.live.handles().slice(1000).map(h => arkanoid.part.live.remove(h))"
+        )
+        page.click("#world-pause")
+        wait_until(page, "part.live.sandbox.record.time > 0.1")
