@@ -25,11 +25,11 @@ MAY_IMPORT = {
 # line or in lines below. The package's own `__init__.py` may import all of them.
 ORDER = {
     "physics": """
+        scenes
         world
         drawing
         operations
         body protocols
-        scenes
         pairs
         shapes
         arguments

@@ -27,7 +27,9 @@ _PARTS = {
     "replay": "Replay",
     "editor": "Editor",
     "collide": "Collide",
+    "world": "World",
 }
+_FOLDERS = ("modules", "watching", "collisions", "worlds")
 # Of `browser_games`: those that people play, and those that agents were trained in.
 _GAMES = ("full by hand", "lite by hand", "full", "lite")
 _PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
@@ -81,7 +83,7 @@ def make_page(
             "opens": opens,
             "style": _read("style.css"),
             "tabs": " ".join(f'<a href="#{name}">{title}</a>' for name, title in _PARTS.items()),
-            "scene": _read("scene.html"),
+            "scene": _read("scene.html") + _read("arena.html"),
             "panels": "\n".join(map(_panel, _PARTS)),
             "unpack": _read("unpack.js"),
             "data": "\n".join(elements),
@@ -114,10 +116,10 @@ def _panel(name: str) -> str:
 
 def _modules() -> dict[str, str]:
     """Return the code of each module, by its name."""
-    rooms = [_HERE / name for name in ("modules", "watching", "collisions")]
+    folders = (resources.files(machine_room), *(_HERE / name for name in _FOLDERS))
     return {
         f"{_PREFIX}{file.name.removesuffix('.js')}": _code(file)
-        for folder in (resources.files(machine_room), *rooms)
+        for folder in folders
         for file in sorted(folder.iterdir(), key=lambda file: file.name)
         if file.name.endswith(".js")
     }

@@ -15,7 +15,7 @@ from sphinx.util.typing import ExtensionMetadata
 FILE = "game.html"
 LINK = f'<p class="play"><a href="{FILE}">Play it now</a> or watch agents, in your browser.</p>'
 
-# The scene of each figure, as the page reads it from its address.
+# The scene of each figure, as the page reads it from its address: of two bodies, and of many.
 SCENES = {
     "colliders": "a=Rectangle,-2,0,1,0.3,2.4,1.4,29&b=Convex,2,0.4,-1,0",
     "open": "a=Convex,-1.5,-0.5,1,0,1,1,0,1,1,trapezium,2&b=Convex,2,0.5,0,0,1,1,0,0,1,trapezium,0",
@@ -28,6 +28,7 @@ SCENES = {
     "disc_convex": "a=Particle,-3.1,2.6,1,-0.9,0.55&b=Convex,0,0,0,0,1.2,1,0,0,1,pentagon",
     "axes": "a=Rectangle,-0.9,-0.9,0,0,1.8,1.1,26&b=Convex,1.1,1,-0.8,-0.65,1,1,17,1,1,triangle",
 }
+WORLDS = {"world": "scene=world", "crowd": "scene=crowd"}
 _FIGURE = re.compile(r'<p><img [^>]*/(\w+)\.svg"[^>]*/?></p>')
 
 
@@ -42,10 +43,14 @@ def link(app: Sphinx, page: str, _: str, context: dict[str, Any], *__: object) -
 
 def _with_scene(figure: re.Match[str]) -> str:
     """Return a figure with the link to its scene, if it has one."""
-    scene = SCENES.get(figure[1])
-    if scene is None:
+    name = figure[1]
+    if name in SCENES:
+        scene = f"collide?{SCENES[name]}"
+    elif name in WORLDS:
+        scene = f"world?{WORLDS[name]}"
+    else:
         return figure[0]
-    address = escape(f"{FILE}#collide?{scene}")
+    address = escape(f"{FILE}#{scene}")
     return f'{figure[0]}\n<p class="scene"><a href="{address}">Try it yourself</a></p>'
 
 

@@ -1,14 +1,26 @@
 """The entries that a browser calls: each does one thing with the record at its address.
 
 They call the very kernels that play, observe and draw on the processor. So the bits are the same.
-The index has no meaning: a record is of one game, tick, picture, board, block, network or meeting.
+The index has no meaning: a record is of one game, tick, picture, board, block, network, meeting
+or sandbox.
 """
 
 from ...physics.kernels import kernel
 from ...physics.kernels.borrowed import BYTE
 from ...physics.kernels.portable import Entry, array_at
 from ...physics.scenes.meeting import meet_figures
-from ...physics.scenes.records import Meeting
+from ...physics.scenes.records import Meeting, Sandbox
+from ...physics.scenes.sandbox import (
+    add_figure,
+    begin_sandbox,
+    change_figure,
+    find_figures,
+    look_around,
+    move_figure,
+    remove_figure,
+    see_sandbox,
+    step_sandbox,
+)
 from ..tensors.observing import observe_grid, observe_vector
 from ..tensors.playing import play
 from .boards import lay_board, plan_board, search_board
@@ -142,10 +154,66 @@ def meet(index: int, address: int) -> None:
     meet_figures(address, array_at(address, (1,), Meeting)[0])
 
 
+@kernel
+def begin_world(index: int, address: int) -> None:
+    """Empty a world to throw things in."""
+    begin_sandbox(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def add_body(index: int, address: int) -> None:
+    """Throw a body in."""
+    add_figure(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def remove_body(index: int, address: int) -> None:
+    """Remove a body."""
+    remove_figure(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def move_body(index: int, address: int) -> None:
+    """Put a body somewhere, with another velocity."""
+    move_figure(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def change_body(index: int, address: int) -> None:
+    """Change what a body is."""
+    change_figure(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def step_world(index: int, address: int) -> None:
+    """Step a world."""
+    step_sandbox(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def see_world(index: int, address: int) -> None:
+    """Find all bodies, and their energy and momentum."""
+    see_sandbox(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def find_bodies(index: int, address: int) -> None:
+    """Find the bodies at a place."""
+    find_figures(array_at(address, (1,), Sandbox)[0])
+
+
+@kernel
+def cast_rays(index: int, address: int) -> None:
+    """Find what rays in all directions meet."""
+    look_around(array_at(address, (1,), Sandbox)[0])
+
+
 _NAMES = (
     *("seed", "reset", "step", "steer", "fit", "forget", "note", "hear"),
     *("vector", "grid"),
     *("measure", "begin", "draw", "plan", "lay", "search", "add", "judge"),
     "meet",
+    *("begin_world", "add_body", "remove_body", "move_body", "change_body"),
+    *("step_world", "see_world", "find_bodies", "cast_rays"),
 )
 ENTRIES = tuple(Entry(__name__, name) for name in _NAMES)

@@ -3,6 +3,7 @@
 import { Board, kindsOf } from "./board.js";
 import { Machine } from "./machine.js";
 import { Meeting } from "./meeting.js";
+import { Sandbox } from "./worlds.js";
 
 /**
  * @typedef {object} Start how episodes begin from now on; nothing given changes nothing
@@ -96,10 +97,20 @@ export class Arkanoid {
 
   /** @returns {Promise<Meeting>} two bodies */
   async meeting() {
+    return new Meeting(await this._scene());
+  }
+
+  /** @returns {Promise<Sandbox>} a world to throw things in */
+  async sandbox() {
+    return new Sandbox(await this._scene(), fromBase64(this.manifest.worlds.header));
+  }
+
+  /** Return a machine with the tables of shapes. */
+  async _scene() {
     const machine = await this.machine();
     const { image, length } = this.manifest.meetings;
     machine.bytes(machine.reserve(length), length).set(fromBase64(image));
-    return new Meeting(machine);
+    return machine;
   }
 }
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ...physics.kernels.portable.wasm import FREE_FROM
-from ...physics.scenes.records import Meeting
+from ...physics.scenes.records import Meeting, Sandbox, Seen
+from ...physics.world.records import Hit, Ray
 from ...version import __version__
 from .. import rules, state
 from ..actions import COMMANDS, action_meanings
@@ -36,6 +37,7 @@ from ..state import INFO_FIELDS, INFO_MEANINGS
 from .collisions import describe_meetings
 from .image import Image, lay_out
 from .records import Block, Board, Game, Hearing, Network, Operation, Picture
+from .worlds import describe_worlds
 
 RECORDS = {
     "Game": Game,
@@ -50,6 +52,10 @@ RECORDS = {
     "Network": Network,
     "Operation": Operation,
     "Meeting": Meeting,
+    "Sandbox": Sandbox,
+    "Seen": Seen,
+    "Hit": Hit,
+    "Ray": Ray,
 }
 _RULES = (
     *("RULES_VERSION", "TICKS_PER_SECOND", "FIELD_WIDTH", "FIELD_HEIGHT", "COLUMNS", "ROWS"),
@@ -121,6 +127,7 @@ def make_manifest(games: Mapping[str, Config]) -> dict[str, Any]:
         },
         "tones": [tone.name for tone in TONES],
         "meetings": describe_meetings(),
+        "worlds": describe_worlds(),
         "levels": [_level(name) for name in level_names()],
         "games": {name: _game(config) for name, config in games.items()},
     }

@@ -1,1 +1,1 @@
-"""Two bodies and all that the engine says of them, as one record: for pages that teach."""
+"""Bodies that pages show: two and all that the engine says of them, or a world of many."""

@@ -9,6 +9,7 @@ from ..shapes.records import (
     AXIS_ALIGNED_RECTANGLE,
     CONVEX,
     PARTICLE,
+    RECTANGLE,
     EdgeRecord,
     Edges,
     ShapeRecord,
@@ -45,6 +46,12 @@ def place_figure(
             turns[turn, 1],
             edges[shape.first + number],
         )
+        if kind in (AXIS_ALIGNED_RECTANGLE, RECTANGLE):
+            # Half of a measure, as rectangles have it.
+            extent = figure.width if number % 2 == 0 else height
+            edges[shape.first + number].offset = (
+                extent * pattern_edges[pattern.first + number].offset
+            )
     shape.lower_x, shape.lower_y, shape.upper_x, shape.upper_y = bounds_of(
         edges, shape.first, shape.count, shape.radius
     )

@@ -1,4 +1,4 @@
-"""What a meeting of two bodies is, as records that kernels read and write."""
+"""What a meeting of two bodies and a sandbox are, as records that kernels read and write."""
 
 import numpy as np
 
@@ -66,3 +66,60 @@ Meeting = record_dtype(
         ("scratch", np.float64, (2 * MAX_CORNERS,)),
     ]
 )
+
+# A body of a sandbox, as it is now.
+Seen = record_dtype(
+    [
+        ("handle", np.int64),
+        ("x", np.float64),
+        ("y", np.float64),
+        ("vx", np.float64),
+        ("vy", np.float64),
+        ("mass", np.float64),  # infinite without a mass
+        ("restitution", np.float64),
+        ("sensor", np.int64),  # 1: a sensor
+    ]
+)
+
+# A world to throw things in, with the blocks of `World`; and what a call asks and answers.
+Sandbox = record_dtype(
+    [
+        ("workspace", np.int64),  # the blocks, uint8: see `world.records`
+        ("workspace_size", np.int64),
+        ("state", np.int64),
+        ("state_size", np.int64),
+        ("inside", np.int64),
+        ("inside_size", np.int64),
+        ("pairs", np.int64),  # that there is room for in it
+        ("hits", np.int64),  # `Hit` [hits_room]
+        ("hits_room", np.int64),
+        ("call", np.int64),  # int64 [number_of_call], see `call_of`
+        ("found", np.int64),  # int64 [room]: handles
+        ("scratch", np.int64),  # float64 [room]
+        ("bodies", np.int64),  # `Seen` [room]
+        ("rays", np.int64),  # `Ray` [RAYS]
+        ("room", np.int64),  # for bodies
+        ("patterns", np.int64),  # tables, as of a meeting
+        ("pattern_edges", np.int64),
+        ("turns", np.int64),
+        ("number_of_patterns", np.int64),
+        ("number_of_edges", np.int64),
+        ("figure", Figure),  # what is thrown in or changed: its numbers, and its outline
+        ("sensor", np.int64),  # whether it is a sensor
+        ("handle", np.int64),  # which body; -1: there is no room, or no such body
+        ("dt", np.float64),  # of a step
+        ("gravity", np.float64),  # how much speed downwards bodies gain in a unit of time
+        ("goes_on", np.int64),  # 1: the step goes on that had no more room for hits
+        ("outcome", np.int64),  # of a step: DONE, MORE, CROWDED or LOST, see `sandbox`
+        ("count", np.int64),  # of the hits, the handles that were found, or the bodies
+        ("x", np.float64),  # where a question is asked, or rays begin
+        ("y", np.float64),
+        ("reach", np.float64),  # a radius about this place, or the length of rays
+        ("time", np.float64),  # so far
+        ("capped", np.int64),
+        ("energy", np.float64),  # of all bodies with a mass, that of their height included
+        ("momentum_x", np.float64),
+        ("momentum_y", np.float64),
+    ]
+)
+RAYS = 180  # of a fan: every second degree

@@ -20,7 +20,7 @@ export function readBody(text) {
   const words = text.split(",");
   const body = {};
   Object.entries(PARTS).forEach(([name, usual], index) => {
-    body[name] = words[index] ? readPart(name, words[index], usual) : usual;
+    body[name] = words[index] ? readPart(words[index], usual, LIMITS[name], name === "turn") : usual;
   });
   if (!COLLIDERS.includes(body.collider)) body.collider = PARTS.collider;
   if (!Object.hasOwn(EDGES, body.polygon)) body.polygon = PARTS.polygon;
@@ -30,12 +30,13 @@ export function readBody(text) {
   return body;
 }
 
-function readPart(name, word, usual) {
+/** @returns {string | number} a word, as a number within its limits if it is one usually */
+export function readPart(word, usual, limits, isWhole) {
   if (typeof usual === "string") return word;
   const number = Number(word);
   if (!Number.isFinite(number)) return usual;
-  const [low, high] = LIMITS[name];
-  return Math.max(low, Math.min(high, name === "turn" ? Math.round(number) : number));
+  const [low, high] = limits;
+  return Math.max(low, Math.min(high, isWhole ? Math.round(number) : number));
 }
 
 /** @returns {object} the bodies that an address holds: a, b, both or none */

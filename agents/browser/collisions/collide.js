@@ -16,7 +16,7 @@ const START = {
 
 export class Collide {
   /** The page shows its scene instead of the game. */
-  scene = true;
+  scene = "collide";
   steers = null;
 
   /** @param {object} app what all pages share, see `app.js` */

@@ -13,9 +13,12 @@ import { Speaker } from "arkanoid/sound";
 import { Stage } from "arkanoid/stage";
 import { Viewer } from "arkanoid/viewer";
 import { Watch } from "arkanoid/watch";
+import { World } from "arkanoid/world";
 
 /** What the page consists of, by the addresses of its parts: #play. */
-const PARTS = { play: Play, watch: Watch, replay: Viewer, editor: Editor, collide: Collide };
+const PARTS = {
+  play: Play, watch: Watch, replay: Viewer, editor: Editor, collide: Collide, world: World,
+};
 
 class App {
   constructor(arkanoid, facts) {
@@ -80,7 +83,9 @@ class App {
     const part = (this._parts[name] ??= new PARTS[name](this));
     this.part = part;
     document.querySelector(".stage").hidden = Boolean(part.scene);
-    document.getElementById("scene").hidden = !part.scene;
+    for (const scene of document.querySelectorAll(".scene")) {
+      scene.hidden = scene.id !== `scene-${part.scene}`;
+    }
     await part.enter();
     if (this.part !== part) return; // another one was asked for meanwhile
     this.stage.sheet();

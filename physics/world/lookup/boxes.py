@@ -69,6 +69,7 @@ def spacing(traits: npt.NDArray[Any]) -> float:
     return float(np.sqrt(width * height / len(positions)))
 
 
+@kernel
 def typical_margin(typical: float, apart: float) -> float:
     """Return the margin of the first box of a body of typical size.
 
@@ -76,12 +77,13 @@ def typical_margin(typical: float, apart: float) -> float:
         typical: the size.
         apart: how far the bodies are from each other.
     """
-    return typical * max(TYPICAL_SHARE, min(MOST_SHARE, SPACING_SHARE * apart / typical))
+    return float(typical * max(TYPICAL_SHARE, min(MOST_SHARE, SPACING_SHARE * apart / typical)))
 
 
+@kernel
 def typical_width(typical: float, margin: float) -> float:
     """Return the width of the box of a body of typical size."""
-    return 2.0 * (typical + max(OWN_SHARE * typical, margin))
+    return float(2.0 * (typical + max(OWN_SHARE * typical, margin)))
 
 
 @kernel

@@ -113,24 +113,24 @@ def test_dragging(scene: Any) -> None:
 def test_typing(scene: Any) -> None:
     """Numbers, shapes, missing edges; what can't be is put right."""
     scene.get_by_role("radio", name="Body a").check()
-    scene.get_by_label("Collider").select_option("Convex")
-    scene.get_by_label("Polygon").select_option("triangle")
-    scene.get_by_label("2", exact=True).check()
-    scene.get_by_label("0", exact=True).check()
-    assert scene.get_by_label("1", exact=True).is_disabled()
-    field = scene.get_by_label("position x")
+    scene.locator("#panel-collide").get_by_label("Collider").select_option("Convex")
+    scene.locator("#panel-collide").get_by_label("Polygon").select_option("triangle")
+    scene.locator("#panel-collide").get_by_label("2", exact=True).check()
+    scene.locator("#panel-collide").get_by_label("0", exact=True).check()
+    assert scene.locator("#panel-collide").get_by_label("1", exact=True).is_disabled()
+    field = scene.locator("#panel-collide").get_by_label("position x")
     field.fill("-1.25")
-    scene.get_by_label("mass").fill("-4")
-    scene.get_by_label("mass").blur()
-    assert scene.get_by_label("mass").input_value() == "1"
-    scene.get_by_label("static").check()
-    scene.get_by_label("rotation").fill("45")
+    scene.locator("#panel-collide").get_by_label("mass").fill("-4")
+    scene.locator("#panel-collide").get_by_label("mass").blur()
+    assert scene.locator("#panel-collide").get_by_label("mass").input_value() == "1"
+    scene.locator("#panel-collide").get_by_label("static").check()
+    scene.locator("#panel-collide").get_by_label("rotation").fill("45")
     scene.get_by_role("button", name="Turn counterclockwise").click()
     body = bodies(scene)["a"]
     expected = {"collider": "Convex", "polygon": "triangle", "open": "02", "x": -1.25}
     assert body.items() >= (expected | {"mass": 0, "turn": 60}).items()
     wait_until(scene, "location.hash.includes('triangle,02')")
-    scene.get_by_label("Polygon").select_option("pentagon")
+    scene.locator("#panel-collide").get_by_label("Polygon").select_option("pentagon")
     assert bodies(scene)["a"]["open"] == ""
 
 
@@ -143,7 +143,7 @@ def test_keys_alone(scene: Any) -> None:
     scene.keyboard.press("Shift+ArrowUp")
     scene.keyboard.press("Tab")
     scene.get_by_role("radio", name="Body b").focus()
-    scene.get_by_label("Collider").select_option("Rectangle")
+    scene.locator("#panel-collide").get_by_label("Collider").select_option("Rectangle")
     scene.locator("#collisions .regions .b").focus()
     scene.keyboard.press("Shift+ArrowLeft")
     scene.locator("#collisions .handle.b .tip").focus()
@@ -183,7 +183,7 @@ def test_on_a_phone(browser: Any, file: Path) -> None:
     """Nothing is wider than the screen, and the picture stays while one changes numbers."""
     with visit(browser, file.as_uri() + APART, **PHONE) as page:
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-        field = page.get_by_label("restitution")
+        field = page.locator("#panel-collide").get_by_label("restitution")
         field.scroll_into_view_if_needed()
         field.fill("0.25")
         assert page.locator("#collisions").bounding_box()["y"] >= 0
