@@ -72,7 +72,7 @@ def test_scenes_are_those_of_python(browser: Any, file: Path, name: str) -> None
                 vx, vy = world.velocity(handle)
                 world.place(handle, velocity=(vx, vy - scene.gravity * (1 / 60)))
         world.step(1 / 60)
-    places = np.array([(thing.x, thing.y, thing.vx, thing.vy) for thing in shown])
+    places = np.array([(thing.x, thing.y, thing.vx, thing.vy) for thing in shown], np.float64)
     expected = np.hstack([world.positions, world.velocities])
     if any(thing.collider == "Convex" for thing in scene.things):
         assert np.abs(places - expected).max() < 1e-9

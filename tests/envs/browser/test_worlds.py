@@ -34,7 +34,7 @@ COLLIDERS = (
     *("Particle", "Particle", "Particle", "AxisAlignedRectangle", "Rectangle", "Convex"),
     "AxisAlignedHalfPlane",
 )
-SEEDS = range(24)
+SEEDS = range(16)
 EDITS = 40
 
 
