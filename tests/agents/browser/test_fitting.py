@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 from helpers.browser import PHONE, visit, wait_until
 
-PARTS = ("play", "watch", "replay", "editor", "collide")
+PARTS = """[...document.querySelectorAll("nav a")].map(({ hash, textContent }) =>
+  [hash.slice(1), textContent])"""
 # Whatever can be pressed or typed into, and has no name for those who hear the page.
 NAMELESS = """() => {
   const named = ({ ariaLabel, labels, textContent, title }) =>
@@ -38,7 +39,7 @@ def test_narrow_screens(browser: Any, file: Path, width: int) -> None:
     """The tabs were wider than a screen of 320 pixels: the page moved sideways."""
     narrow = PHONE | {"viewport": {"width": width, "height": 640}}
     with visit(browser, file.as_uri(), **narrow) as page:
-        for part in PARTS:
+        for part, _ in page.evaluate(PARTS):
             go_to(page, part)
             assert page.evaluate(TOO_FAR) == [], part
 
@@ -54,9 +55,9 @@ def test_a_phone_on_its_side(browser: Any, file: Path) -> None:
 
 def test_each_part_has_a_title_and_names(page: Any) -> None:
     """All parts had one title; two fields of a body were called "y"."""
-    for part in PARTS:
+    for part, name in page.evaluate(PARTS):
         go_to(page, part)
-        assert page.title() == f"{part.title()} – Arkanoid"
+        assert page.title() == f"{name} – Arkanoid"
         assert page.evaluate(NAMELESS) == []
     for name in ("position y", "velocity y"):
         assert page.get_by_label(name, exact=True).count() == 1
