@@ -267,7 +267,7 @@ def step_sandbox(sandbox: Any) -> None:
     if not sandbox.goes_on:
         _tune(sandbox, world)
         _pull(world, sandbox.gravity * sandbox.dt)
-    count = step_worlds(array_at(sandbox.call, (CALL,), INDEX), 0, sandbox.dt, 1)
+    count = step_worlds(sandbox.call, 0, sandbox.dt, 1)
     sandbox.outcome = DONE
     if count == INVALID:
         sandbox.outcome, count = LOST, 0

@@ -10,8 +10,7 @@ Three blocks of memory hold a world. Each is one array of bytes, so that a kerne
   records, shapes, the tree of static bodies) and scratch memory. The worlds of a batch share one
   workspace per thread, one after the other, until a world is edited: then it gets its own.
 
-All parts of a block have room for more than they hold. Where there is no more room, Python makes a
-larger block between two steps.
+All parts have room for more. Where there is none, Python makes a larger block between two steps.
 """
 
 from typing import Any, TypeAlias
@@ -23,9 +22,7 @@ from ..kernels.layouts import record_dtype
 # What an event is (`Hit.kind`).
 HIT = 0  # two bodies bounced off each other
 BEGIN = 1  # a body entered a sensor
-# A body left a sensor. The normal is zero if the direction is not known: for a body that relaxation
-# moved out, or in a world that is not continuous.
-END = 2
+END = 2  # a body left a sensor; the normal is zero where the direction is not known
 
 # What a body plans (`Plan.kind`).
 NOTHING = 0  # to move straight on until the step ends
@@ -333,8 +330,7 @@ Member = record_dtype(
         ("met", np.int64),  # touches, and then hits
         ("rests", np.int64),  # 1: some are inelastic
         ("due", np.int64),  # 1: it had planned to meet somebody now, or somebody to meet it
-        # The touches of which it is the first one are a list, in order; -1 where it ends.
-        ("first", np.int64),
+        ("first", np.int64),  # of the list of touches whose first member it is; -1 if none
         ("last", np.int64),
     ]
 )
@@ -354,8 +350,7 @@ Touch = record_dtype(
         ("restitution", np.float64),
         ("aim", np.float64),  # the speed at which they have to recede
         ("change", np.float64),  # of their relative speed, by the impulse
-        # See `solver`.
-        ("weight", np.float64),  # the mass that the two have for an impulse; the most is 1
+        ("weight", np.float64),  # see `solver`: the mass for an impulse; the most is 1
         ("slope", np.float64),
         ("course", np.float64),
         ("bend", np.float64),
@@ -377,7 +372,6 @@ Hit = record_dtype(
 
 # What kernels are passed. Numba types it; to a type checker it is anything.
 Block: TypeAlias = Any  # uint8 [bytes]
-Blocks: TypeAlias = Any  # uint8 [worlds, bytes]
 Indices: TypeAlias = Any  # int64 [n]
 ClockRecord: TypeAlias = Any  # one `Clock`
 CourseRecord: TypeAlias = Any  # one `Course`
