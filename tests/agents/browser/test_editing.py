@@ -131,10 +131,10 @@ def test_files_come_and_go_as_python_reads_them(editor: Any, tmp_path: Path) -> 
         put(editor, f"{name}.txt", f"name: {level.name}\ncomment: A: b\n{boss}\n" + "\n".join(rows))
         wait_until(editor, f"part._level.name === {level.name!r}")
         assert bricks(editor) == letters_
-        editor.get_by_text("Level files").click()
+        editor.get_by_text("Level files", exact=True).click()
         with editor.expect_download() as download:
             editor.get_by_role("button", name="Download").click()
-        editor.get_by_text("Level files").click()
+        editor.get_by_text("Level files", exact=True).click()
         path = tmp_path / download.value.suggested_filename
         assert path.name == f"{name}.txt"
         download.value.save_as(path)
@@ -169,7 +169,7 @@ def test_a_file_that_is_opened_again_and_names_that_nobody_sees(
         path.write_text(f"comment: \U0001f468\u200d\U0001f469\n\n{row}\n", "utf-8")
         editor.locator("#level-file").set_input_files(path)
         wait_until(editor, f"part._level.bricks.startsWith('{row}')")
-    editor.get_by_text("Level files").click()
+    editor.get_by_text("Level files", exact=True).click()
     assert editor.get_by_label("Name").input_value() == "twice"
     editor.get_by_label("Name").fill("A\u200db\u00a0c")
     with editor.expect_download() as download:
