@@ -58,6 +58,10 @@ ROUGHLY = 0.01
 STEPS = 64
 STEPS_PER_TOUCH = 8
 
+# The same while overlaps are relaxed. Where there is no room, this ends it, and what is left is
+# relaxed pair by pair.
+RELAX_STEPS = 1
+
 # A fraction. If a course, in the method that resolves a group, bends less than this, there is no
 # end to it: the bodies have no room. Masses of 1 : 1e9 still bend by 1e-10. Bodies that press each
 # other along a line that is straight to 1e-6 would leave it a million times faster.

@@ -9,7 +9,7 @@ from ..kernels import kernel
 from ..pairs.response import shares
 from ..pairs.results import NO_CONTACT
 from ..pairs.table import contact_between
-from ..tolerances import RELAX_PAIRWISE, RELAX_REACH, RELAX_ROUNDS, RESOLVED
+from ..tolerances import RELAX_PAIRWISE, RELAX_REACH, RELAX_ROUNDS, RELAX_STEPS, RESOLVED
 from .courses import margins_of, motion_at, move_to
 from .events import enter_sensor, has_room, write_event
 from .lookup.boxes import first_margin, fit, follow
@@ -97,7 +97,7 @@ def _relax_together(world: WorldView, deepest: float) -> bool:
     progress, members = progress_of(world), members_of(world)
     if progress.touches < 2:
         return True
-    if not resolve(world, RESOLVED):
+    if not resolve(world, RESOLVED, RELAX_STEPS):
         return False
     for index in range(progress.members):
         member = members[index]

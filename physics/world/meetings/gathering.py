@@ -14,12 +14,16 @@ from ..view import (
     near_of,
     plans_of,
     progress_of,
+    shapes_of,
     stale_of,
     traits_of,
     winners_of,
 )
 from .passing import inverse_mass_of
 from .touches import add_member, are_joined, clear_group, join, velocities_of, would_hit
+
+# A fraction of the coordinates and sizes: what is so far apart does not touch.
+APART = 1e-6
 
 
 @kernel
@@ -127,15 +131,40 @@ def _join_around(world: WorldView, body: int, now: float, now_low: float) -> Non
         return
     count = find_near(world, own.slot, False)
     sort_items(near, count)
+    x, y, _, _ = motion_at(world, body, now, now_low)
     for index in range(count):
         other = near[index]
-        if traits[other].sensor >= 0:
+        if traits[other].sensor >= 0 or _are_apart(world, body, other, x, y, now, now_low):
             continue
         a, b = body, other
         if b < a and inverse_mass_of(world, b) > 0.0:
             a, b = b, a
         if not are_joined(world, a, b):
             _join_touching(world, a, b, now, now_low)
+
+
+@kernel
+def _are_apart(
+    world: WorldView, body: int, other: int, x: float, y: float, now: float, now_low: float
+) -> bool:
+    """Return whether a body at (x, y) is too far from another one to touch it.
+
+    This sorts out most bodies around, and leaves far more room than touching takes.
+    """
+    their_x, their_y, _, _ = motion_at(world, other, now, now_low)
+    traits, shapes = traits_of(world), shapes_of(world)
+    one, two = shapes[traits[body].collider], shapes[traits[other].collider]
+    lower_x, upper_x = their_x + two.lower_x, their_x + two.upper_x
+    lower_y, upper_y = their_y + two.lower_y, their_y + two.upper_y
+    width = (one.upper_x - one.lower_x) + (upper_x - lower_x)
+    height = (one.upper_y - one.lower_y) + (upper_y - lower_y)
+    room = APART * (abs(x) + abs(y) + abs(their_x) + abs(their_y) + width + height)
+    return bool(
+        (lower_x - (x + one.upper_x) > room)
+        | ((x + one.lower_x) - upper_x > room)
+        | (lower_y - (y + one.upper_y) > room)
+        | ((y + one.lower_y) - upper_y > room)
+    )
 
 
 @kernel

@@ -19,13 +19,13 @@ group's speed, and weights of the largest one, so that no square overflows or va
 import math
 
 from ...kernels import kernel
-from ...tolerances import NO_BEND, RESOLVED, STEPS, STEPS_PER_TOUCH, SWEEPS
+from ...tolerances import NO_BEND, RESOLVED, STEPS, SWEEPS
 from ..records import TouchRecord
 from ..view import WorldView, members_of, progress_of, touches_of
 
 
 @kernel
-def resolve(world: WorldView, tolerance: float) -> bool:
+def resolve(world: WorldView, tolerance: float, steps_per_touch: int) -> bool:
     """Find the velocities of all members; return False if there are none, or it takes too long.
 
     If there are none, because there is no room for the bodies, each touch in turn gets what it
@@ -34,6 +34,7 @@ def resolve(world: WorldView, tolerance: float) -> bool:
     Args:
         world: the world.
         tolerance: what a touch may lack, a fraction of the group's speed.
+        steps_per_touch: after so many steps, and a few, it takes too long.
     """
     touches = progress_of(world).touches
     if _bounce_each(world):
@@ -44,7 +45,7 @@ def resolve(world: WorldView, tolerance: float) -> bool:
     longest = _longest_step(world)
     _weigh(world)
     is_new = True
-    for _ in range(STEPS + STEPS_PER_TOUCH * touches):
+    for _ in range(STEPS + steps_per_touch * touches):
         most, free, bound = _measure(world, speed)
         if most * speed <= tolerance * group_speed(world):
             return True

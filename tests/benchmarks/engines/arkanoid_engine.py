@@ -65,6 +65,7 @@ class Batch:
         """Build the batch; velocities: float64 [worlds, 2], of the only disc of each world."""
         self.batch = WorldBatch(build(scene), len(velocities))
         self.batch.velocities[:, 0] = velocities
+        self.batch.step(0.0)  # as in `build`
 
     def run(self, steps: int) -> int:
         step, hits = self.batch.step, 0

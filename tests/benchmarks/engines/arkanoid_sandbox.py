@@ -52,11 +52,10 @@ class ArkanoidSandbox:
             self.world.place(self.crates, velocity=speeds)
         self.world.step(STEP)
 
-    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:
+    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float]:
         starts, ends = np.array(rays).swapaxes(0, 1)
-        hits = self.world.query_rays(starts, ends)
-        missed = hits.bodies < 0
-        return [None if miss else part for miss, part in zip(missed, hits.fractions, strict=True)]
+        fractions: list[float] = self.world.query_rays(starts, ends).fractions.tolist()
+        return fractions
 
 
 SANDBOX = ArkanoidSandbox

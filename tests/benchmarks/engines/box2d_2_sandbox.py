@@ -1,5 +1,6 @@
 """Box2D 2.3 as a sandbox, through pybox2d; with the iterations of its manual."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -51,8 +52,8 @@ class Box2D2Sandbox:
     def step(self) -> None:
         self.world.Step(STEP, 8, 3)
 
-    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:
-        fractions: list[float | None] = []
+    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float]:
+        fractions: list[float] = []
         for start, end in rays:
             nearest = Nearest()
             self.world.RayCast(nearest, start, end)
@@ -63,7 +64,7 @@ class Box2D2Sandbox:
 class Nearest(Box2D.b2RayCastCallback):
     """Keeps the first fixture of a ray."""
 
-    fraction: float | None = None
+    fraction = math.inf
 
     def ReportFixture(self, fixture: Any, point: Any, normal: Any, fraction: float) -> float:  # noqa: N802
         self.fraction = fraction

@@ -1,5 +1,6 @@
 """Box2D 3.1 as a sandbox, through pyb2d3; with four sub-steps, as in its manual."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -54,11 +55,11 @@ class Box2D3Sandbox:
     def step(self) -> None:
         self.world.step(STEP, 4)
 
-    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:
+    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float]:
         hits = []
         for (x, y), (to_x, to_y) in rays:
             hit = self.world.cast_ray_closest(origin=(x, y), translation=(to_x - x, to_y - y))
-            hits.append(hit.fraction if hit.hit else None)
+            hits.append(hit.fraction if hit.hit else math.inf)
         return hits
 
 

@@ -1,5 +1,6 @@
 """Chipmunk as a sandbox, through pymunk; with its defaults."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -53,11 +54,14 @@ class PymunkSandbox:
     def step(self) -> None:
         self.space.step(STEP)
 
-    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:
+    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float]:
         everything = pymunk.ShapeFilter()
         cast = self.space.segment_query_first
-        hits = [cast(start, end, 0.0, everything) for start, end in rays]
-        return [None if hit is None else hit.alpha for hit in hits]
+        fractions = []
+        for start, end in rays:
+            hit = cast(start, end, 0.0, everything)
+            fractions.append(math.inf if hit is None else hit.alpha)
+        return fractions
 
 
 SANDBOX = PymunkSandbox

@@ -49,5 +49,5 @@ class Sandbox(Protocol):
     def step(self) -> None:
         """Take one step."""
 
-    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float | None]:
-        """Return for each ray (from, to) the part of it before what it meets first, or None."""
+    def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float]:
+        """Return for each ray (from, to) the part of it before what it meets first, or inf."""
