@@ -81,37 +81,54 @@ def next_end(
 
 
 @kernel
-def next_side(
+def next_stretch(
     shapes: Shapes,
     edges: Edges,
     index: int,
     tried: int,
     dx: float,
     dy: float,
+    way_x: float,
+    way_y: float,
     margin_x: float,
     margin_y: float,
 ) -> tuple[int, int, float, float]:
-    """Return (tried, number, x, y): the next face of a shape at (dx, dy) on which the origin lies.
+    """Return (tried, number, first, last): the next side of a shape along which a point moves.
 
-    Arguments and results are as of `next_end`. The point, relative to the shape, is as far out of
-    the face as rounding may hide.
+    Args:
+        shapes, edges, index: the shape, at (dx, dy) from where the point begins.
+        tried: how many sides were looked at already; the first time 0, then what was returned.
+        way_x, way_y: the way of the point.
+        margin_x, margin_y: as of `touching`.
+
+    Returns:
+        The number is the side's, an index of ``edges``, or -1 if there is no further one. The point
+        touches it between two fractions of its way.
     """
-    first, count = shapes[index].first, shapes[index].count
+    begin, count = shapes[index].first, shapes[index].count
     while tried < count:
-        number = first + tried
+        number = begin + tried
         tried += 1
         edge = edges[number]
         x, y = edge.normal_x, edge.normal_y
         margin, aside = (
             margin_along(x, y, margin_x, margin_y),
-            margin_along(y, x, margin_x, margin_y),
+            margin_along(-y, x, margin_x, margin_y),
         )
-        along = y * dx - x * dy
-        is_on_line = abs(-(x * dx + y * dy) - edge.offset) <= margin
-        is_after_start = not edge.has_start or along > x * edge.start_y - y * edge.start_x + aside
-        is_before_end = not edge.has_end or along < x * edge.end_y - y * edge.end_x - aside
-        if is_on_line and is_after_start and is_before_end:
-            return tried, number, 2.0 * margin * x - dx, 2.0 * margin * y - dy
+        place, speed = y * dx - x * dy, x * way_y - y * way_x  # along (-y, x)
+        if speed == 0.0:
+            continue
+        low = x * edge.start_y - y * edge.start_x if edge.has_start else -math.inf
+        high = x * edge.end_y - y * edge.end_x if edge.has_end else math.inf
+        one, other = (low - place) / speed, (high - place) / speed
+        first, last = max(0.0, min(one, other)), min(1.0, max(one, other))
+        gap, rise = -(x * dx + y * dy) - edge.offset, x * way_x + y * way_y
+        if (
+            (last - first) * abs(speed) > 2.0 * aside
+            and abs(gap + rise * first) <= margin
+            and abs(gap + rise * last) <= margin
+        ):
+            return tried, number, first, last
     return tried, -1, 0.0, 0.0
 
 

@@ -48,6 +48,7 @@ def relax_overlaps(world: WorldView) -> bool:
     """
     motions, order, traits = motions_of(world), order_of(world), traits_of(world)
     put_in_order(world)
+    _freshen_partners(world)
     has_moved, has_room_for_all = False, True
     for number in range(RELAX_ROUNDS):
         deepest = 0.0
@@ -62,6 +63,27 @@ def relax_overlaps(world: WorldView) -> bool:
             has_room_for_all = _relax_together(world, deepest)
     progress_of(world).crowded = 1
     return has_moved
+
+
+@kernel
+def _freshen_partners(world: WorldView) -> None:
+    """Let those be fresh that a fresh body overlaps: so it does not matter which of them it is."""
+    motions, near, order, traits = (
+        motions_of(world),
+        near_of(world),
+        order_of(world),
+        traits_of(world),
+    )
+    for place in range(order.shape[0]):
+        body = order[place]
+        if not motions[traits[body].slot].fresh:
+            continue
+        for index in range(_find_close(world, traits[body].slot)):
+            other = near[index]
+            if traits[other].inverse_mass == 0.0 or motions[traits[other].slot].fresh:
+                continue
+            if _solid_contact(world, body, other)[0]:
+                _begin_anew(world, other)
 
 
 @kernel

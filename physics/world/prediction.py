@@ -7,6 +7,7 @@ systems, J. Comput. Phys. 94, 1991). A plan holds until one of its two bodies ch
 import math
 
 from ..kernels import kernel
+from ..pairs.table import contact_between
 from ..pairs.touching import margin_along
 from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
 from .clock_time import elapsed, is_earlier, later
@@ -22,6 +23,7 @@ from .records import HELD, INDEX_BITS, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
+    edges_of,
     list_of,
     motions_of,
     moving_of,
@@ -170,8 +172,6 @@ def _meeting(
         if progress_of(world).inert and has_reached(world, body, other, HELD):
             # So every meeting has a body that it brings closer to being held.
             return math.inf, 0.0, 0.0, 0.0
-        if time == 0.0 and (motion.fresh or (trait.slot >= 0 and motions[trait.slot].fresh)):
-            progress_of(world).touching = 1
         if time * closing <= margin and passes_by(world, body, other, closing):
             return math.inf, 0.0, 0.0, 0.0
     # For no longer than a flat angle explains: a plan to leave the box must not come before that.
@@ -268,10 +268,14 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
         if not comes_close(world, slot, trait, x, y, now, now_low, left):
             continue
         since, since_low = motion.at, motion.at_low
+        is_fresh = bool(motion.fresh)
         if trait.slot >= 0:
             theirs = motions[trait.slot]
+            is_fresh = is_fresh or bool(theirs.fresh)
             if is_earlier(since, since_low, theirs.at, theirs.at_low):
                 since, since_low = theirs.at, theirs.at_low
+        if is_fresh and not progress_of(world).overlapping:
+            progress_of(world).overlapping = _overlap(world, body, other, now, now_low)
         time, normal_x, normal_y, slack = _meeting(
             world, slot, other, since, since_low, best, best_low
         )
@@ -329,6 +333,27 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
             left = elapsed(best, best_low, now, now_low) * (1.0 + SPARE) + slack
     if plan.kind != NOTHING:
         plan.time, plan.time_low = best, best_low
+
+
+@kernel
+def _overlap(world: WorldView, a: int, b: int, now: float, now_low: float) -> bool:
+    """Return whether two solid bodies overlap by more than touching, also if they fly apart."""
+    one, other = traits_of(world)[a], traits_of(world)[b]
+    if one.sensor >= 0 or other.sensor >= 0:
+        return False
+    ax, ay, _, _ = motion_at(world, a, now, now_low)
+    bx, by, _, _ = motion_at(world, b, now, now_low)
+    dx, dy = bx - ax, by - ay
+    shape, their_shape = shapes_of(world)[one.collider], shapes_of(world)[other.collider]
+    if dx + their_shape.lower_x > shape.upper_x or dx + their_shape.upper_x < shape.lower_x:
+        return False
+    if dy + their_shape.lower_y > shape.upper_y or dy + their_shape.upper_y < shape.lower_y:
+        return False
+    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
+    shapes, edges = shapes_of(world), edges_of(world)
+    return contact_between(shapes, edges, one.collider, other.collider, dx, dy, margin_x, margin_y)[
+        0
+    ]
 
 
 @kernel

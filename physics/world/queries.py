@@ -2,7 +2,7 @@
 
 import math
 
-from ..kernels import kernel
+from ..kernels import inlined, kernel
 from ..kernels.borrowed import borrowed
 from ..pairs.results import NO_IMPACT
 from ..pairs.seams import lies_along
@@ -186,7 +186,7 @@ def _try(
 ) -> None:
     """Let a ray meet a body, if it does so before all others.
 
-    ``unboxed`` and ``used`` are as of `is_filled`.
+    ``unboxed`` and ``used`` are as of `find_at`.
     """
     trait = traits_of(world)[body]
     if (trait.category & mask) == 0:
@@ -198,7 +198,7 @@ def _try(
     may_graze = ray.room == 0.0 and shape.count > 0
     if may_graze and not is_side and passes_close(ray, shape, x, y):
         at_border, border_x, border_y = meet_border(
-            world, shapes, edges, ray, mask, body, x, y, unboxed, used
+            world, shapes, edges, ray, mask, body, unboxed, used
         )
         if at_border < math.inf:
             time, normal_x, normal_y = at_border, border_x, border_y
@@ -207,7 +207,7 @@ def _try(
         ray.normal_x, ray.normal_y = normal_x, normal_y
 
 
-@kernel
+@inlined
 def _meet(
     shapes: Shapes, edges: Edges, ray: RayRecord, other: int, x: float, y: float
 ) -> tuple[float, float, float]:

@@ -302,7 +302,7 @@ Progress = record_dtype(
         ("next_body", np.int64),  # place of the next pair of the lecture's procedure
         ("next_near", np.int64),
         ("full", np.int64),  # 1: there was no room for another hit
-        ("touching", np.int64),  # 1: a fresh body overlaps or touches another one
+        ("overlapping", np.int64),  # 1: a fresh body overlaps another one
         ("crowded", np.int64),  # 1: relaxation gave up, and left overlaps for the next step
         ("hits", np.int64),  # of all bodies in this step
         ("inert", np.int64),  # 1: for a body, the hits before decide how it bounces

@@ -1,6 +1,6 @@
 """The workspace that worlds are stepped in: tables with room to grow, one after the other."""
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -293,7 +293,7 @@ class Setup:
 
 def _pairs(records: npt.NDArray[Any], name: str) -> FloatArray:
     """Return a view of a field of records and the one after it, float64 [n, 2]."""
-    first = records.dtype.fields[name][1]
+    first = cast(Any, records.dtype.fields)[name][1]
     return np.ndarray((len(records), 2), np.float64, records, first, (records.itemsize, 8))
 
 

@@ -38,7 +38,7 @@ class Stepper:
     def __init__(self, sites: Sequence[Site]) -> None:
         self._sites = sites
         self._hits: npt.NDArray[Any] = np.zeros(FIRST_ROOM, Hit)
-        self._bytes = memoryview(self._hits.view(np.uint8))
+        self._bytes = self._hits.view(np.uint8).data
         self._call: npt.NDArray[np.int64] | None = None
         self.has_pending = self._has_sensors = False
         self.halt()
@@ -110,7 +110,7 @@ class Stepper:
             return
         hits = np.zeros(2 * len(self._hits), Hit)
         hits[: len(self._hits)] = self._hits
-        self._hits, self._bytes = hits, memoryview(hits.view(np.uint8))
+        self._hits, self._bytes = hits, hits.view(np.uint8).data
         use_hits(self._call, hits)
 
     def _with_pending(self, hits: npt.NDArray[Any]) -> npt.NDArray[Any]:

@@ -178,7 +178,7 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
         count = leave_placed(world, hits, count, world_index)
     if header_of(world).continuous:
         _plan(world, clock.planned != PLANNED)
-        if progress.touching and relax_overlaps(world):
+        if progress.overlapping and relax_overlaps(world):
             _plan(world, False)
         clock.planned = PLANNED
         _end_freshness(world)
@@ -254,7 +254,7 @@ def _move_all(world: WorldView) -> None:
 def _plan(world: WorldView, anew: bool) -> None:
     """Make the plans of fresh bodies, and of those that planned to meet them; or all plans."""
     motions = motions_of(world)
-    progress_of(world).touching = 0
+    progress_of(world).overlapping = 0
     fresh = 0
     for slot in range(motions.shape[0]):
         fresh += motions[slot].fresh

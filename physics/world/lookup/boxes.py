@@ -47,7 +47,7 @@ SPACING_SHARE = 0.33
 # and few that are fixed, gets a larger one. All are between these shares of the first one.
 CROWDED = 8
 LONELY = 1
-FEW_FIXED = 6
+FEW_FIXED = 3
 LEAST_SHARE = 0.1
 MOST_SHARE = 8.0
 # A box is ahead of the body by this share of the margin, so that the body is in it for longer.

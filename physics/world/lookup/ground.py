@@ -108,7 +108,7 @@ def _stands_at(
 
 
 @kernel
-def is_filled(
+def find_at(
     world: WorldView,
     shapes: Shapes,
     edges: Edges,
@@ -118,8 +118,8 @@ def is_filled(
     y: float,
     unboxed: int,
     used: int,
-) -> bool:
-    """Return whether a body, other than one, covers a place between two steps.
+) -> int:
+    """Return a body, other than one, that covers a place between two steps; -1 if there is none.
 
     Args:
         world, shapes, edges: the world and its shapes.
@@ -132,21 +132,22 @@ def is_filled(
     near = near_of(world)
     for index in range(unboxed):
         if _is_at(world, shapes, edges, mask, other, near[index], x, y):
-            return True
+            return int(near[index])
     waiting = _begin_walk(world, used)
     while waiting > 0:
         body, waiting = _next_leaf_at(world, x, y, used, waiting)
         if body >= 0 and _is_at(world, shapes, edges, mask, other, body, x, y):
-            return True
+            return body
     if header_of(world).has_grid:
         for level in range(grid_of(world).lowest, grid_of(world).highest + 1):
-            if _is_filled_on_level(world, shapes, edges, mask, other, x, y, level):
-                return True
-    return False
+            body = _find_on_level(world, shapes, edges, mask, other, x, y, level)
+            if body >= 0:
+                return body
+    return NO_ONE
 
 
 @kernel
-def _is_filled_on_level(
+def _find_on_level(
     world: WorldView,
     shapes: Shapes,
     edges: Edges,
@@ -155,8 +156,8 @@ def _is_filled_on_level(
     x: float,
     y: float,
     level: int,
-) -> bool:
-    """Return whether a body on a level of the grid covers a place; arguments as above."""
+) -> int:
+    """Return a body on a level of the grid that covers a place, or -1; arguments as above."""
     boxes, heads, moving = boxes_of(world), heads_of(world), moving_of(world)
     size = cell_size(world, level)
     # The middle of a box with the place inside is at most half a cell away.
@@ -167,9 +168,9 @@ def _is_filled_on_level(
             slot = heads[bucket_of(level, column, row, heads.shape[0])]
             while slot != NO_ONE:
                 if _is_at(world, shapes, edges, mask, other, moving[slot], x, y):
-                    return True
+                    return int(moving[slot])
                 slot = boxes[slot].next
-    return False
+    return NO_ONE
 
 
 @kernel

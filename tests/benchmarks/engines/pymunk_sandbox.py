@@ -57,8 +57,11 @@ class PymunkSandbox:
     def rays(self, rays: Sequence[tuple[Pair, Pair]]) -> list[float]:
         everything = pymunk.ShapeFilter()
         cast = self.space.segment_query_first
-        hits = [cast(start, end, 0.0, everything) for start, end in rays]
-        return [math.inf if hit is None else hit.alpha for hit in hits]
+        fractions = []
+        for start, end in rays:
+            hit = cast(start, end, 0.0, everything)
+            fractions.append(math.inf if hit is None else hit.alpha)
+        return fractions
 
 
 SANDBOX = PymunkSandbox

@@ -301,6 +301,8 @@ def test_an_edited_world_is_one_that_was_built_so(seed: int, continuous: bool) -
         begin = double.world.time
         hits = double.world.step(0.02)
         expected = anew.step(0.02)
+        if anew.capped:  # Something has no room: there is no right answer, see the limits.
+            return
         # Those that were inside before do not begin again.
         solid = hits[hits["kind"] == 0]
         ours, theirs = told(solid, names), told(expected[expected["kind"] == 0])

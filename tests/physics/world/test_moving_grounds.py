@@ -38,6 +38,25 @@ def test_a_corner_that_lands_on_a_seam_of_a_platform_meets_the_ground(
         assert world.velocities[-1] == pytest.approx(expected, abs=1e-14)
 
 
+@pytest.mark.parametrize(("shape", "reach"), CORNERS)
+def test_a_platform_that_has_stopped_beside_the_floor_goes_on_in_it(
+    shape: Collider, reach: float
+) -> None:
+    """It is kinematic and at rest, and the floor static: they meet at x = 1/2."""
+    for vx, moves_left in product((0, 0.1, -1, 3), (True, False)):
+        tiles = [
+            Body(AxisAlignedRectangle(1, 0.2), (i, 0.1), (0, float((i <= 0) == moves_left)))
+            for i in range(-4, 5)
+        ]
+        place = (0.5 - vx * 0.3, 0.5 + reach)
+        world = World([*tiles, Body(shape, place, (vx, -1), mass=1)])
+        for handle in range(len(tiles)):
+            world.place(handle, velocity=(0, 0))
+        (hit,) = world.step(0.8)
+        assert hit["normal"].tolist() == [0, 1]
+        assert world.velocities[-1].tolist() == [vx, 1]
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_lands_on_a_platform_bounces_as_off_one_body(kind: str) -> None:
     """Turned as a whole, and often met at a seam or almost along it."""

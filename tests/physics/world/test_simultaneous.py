@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from arkanoid.physics import BEGIN, END, HIT, AxisAlignedRectangle, Body, Particle, Rectangle, World
+from helpers.bodies import DISC
 
 
 @pytest.mark.parametrize("count", [3, 20])
@@ -49,3 +50,14 @@ def test_what_a_wall_turns_away_does_not_enter_the_sensor_behind_its_face() -> N
         hits = world.step(1.5)
         hits = hits[(hits["a"] == deeper) | (hits["b"] == deeper) | (hits["kind"] == HIT)]
         assert hits["kind"].tolist() == [BEGIN, HIT, END]
+
+
+def test_relaxation_does_not_depend_on_what_happens_elsewhere() -> None:
+    """Two that overlap and fly apart were only moved apart if any two others touched."""
+    pair = [Body(DISC, (0, 0), (-1, 0), 1), Body(DISC, (0.5, 0), (1, 0), 1)]
+    others = [Body(DISC, (9, 0), (0, 0), 1), Body(DISC, (10, 0), (-1, 0), 1)]
+    alone, among = World(pair), World([*pair, *others])
+    alone.step(0.5)
+    among.step(0.5)
+    assert alone.positions.tolist() == [[-0.75, 0], [1.25, 0]]
+    assert among.positions[:2].tolist() == alone.positions.tolist()
