@@ -303,16 +303,14 @@ def test_an_edited_world_is_one_that_was_built_so(seed: int, continuous: bool) -
         expected = anew.step(0.02)
         if anew.capped:  # Something has no room: there is no right answer, see the limits.
             return
-        # Those that were inside before do not begin again.
-        solid = hits[hits["kind"] == 0]
+        solid = hits[hits["kind"] == 0]  # what was inside before does not begin again
         ours, theirs = told(solid, names), told(expected[expected["kind"] == 0])
         assert ours.keys() == theirs.keys()
         for pair, times in ours.items():
             assert np.array(times) - begin == pytest.approx(theirs[pair], abs=1e-12)
         assert double.world.positions == pytest.approx(anew.positions, abs=1e-11)
         assert double.world.velocities == pytest.approx(anew.velocities, abs=1e-10)
-        # Each pair begins and ends in turn.
-        for hit in hits[hits["kind"] != 0]:
+        for hit in hits[hits["kind"] != 0]:  # each pair begins and ends in turn
             pair = (int(hit["a"]), int(hit["b"]))
             assert (pair in inside) == (hit["kind"] == END)
             (inside.remove if hit["kind"] == END else inside.add)(pair)
