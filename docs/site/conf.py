@@ -44,7 +44,7 @@ nitpicky = True
 # Without a network there are no pages of other projects to link to. And a docstring may name what
 # only a reader of the sources needs.
 nitpick_ignore_regex = [
-    ("py:.*", r"(collections|gymnasium|numpy|os|stable_baselines3|torch)\..*"),
+    ("py:.*", r"(collections|gymnasium|numpy|os|stable_baselines3|torch|types)\..*"),
     ("py:class", r"Batch|VecEnv|arkanoid\..*"),
     ("py:obj", ".*"),
 ]
