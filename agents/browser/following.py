@@ -22,6 +22,7 @@ from ..learn.portable import portable_network
 _POINTS = 200  # of a curve
 _LEAST = 0.5  # seconds between two looks
 _SHARE = 20  # looking takes one part of so many of a processor's time
+_MOST = 5.0  # seconds, however long one look took: the first one loads libraries
 _FPS = "time/fps"
 _MINUTE, _HOUR = 60, 3600
 _NONE_YET = "The training has not written its first checkpoint."
@@ -67,7 +68,7 @@ class FollowedRun:
                 began = time.process_time()
                 self._news = self._look()
                 spent = time.process_time() - began
-                self._due = time.monotonic() + max(_LEAST, _SHARE * spent)
+                self._due = time.monotonic() + min(_MOST, max(_LEAST, _SHARE * spent))
             return self._news
 
     def network(self) -> bytes | None:

@@ -1,12 +1,12 @@
 // The collision playground: two bodies, and live what the engine says of them.
 
+import { Address } from "arkanoid/address";
 import { readBody, readScene, writeScene } from "arkanoid/bodies";
 import { Drawing } from "arkanoid/drawing";
 import { Form } from "arkanoid/form";
 import { Sayings } from "arkanoid/sayings";
 
 const TURN = 5; // degrees for each key
-const SETTLED = 300; // milliseconds after which the address has the scene
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const MOST = { x: 8, y: 4.5, v: 9 }; // how far one can drag
 const START = {
@@ -40,17 +40,21 @@ export class Collide {
       bounce: () => this._take((body, said) => ({ vx: said.bounced_vx, vy: said.bounced_vy })),
     });
     this.side = "b";
+    this._address = new Address(() => `#collide?${writeScene(this.bodies)}`);
   }
 
   async enter() {
     this.meeting ??= await this.app.arkanoid.meeting();
+    const scene = readScene(location.hash);
+    Object.assign(this.bodies, scene);
+    // One comes back.
+    if (this.opened !== undefined && Object.keys(scene).length === 0) this._address.now();
     this.opened = location.hash;
-    Object.assign(this.bodies, readScene(this.opened));
     this.choose(this.side);
   }
 
   leave() {
-    if (this._later) this._note();
+    this._address.leave();
   }
 
   press() {}
@@ -72,8 +76,7 @@ export class Collide {
   change(side, changes) {
     Object.assign(this.bodies[side], changes);
     this.choose(side);
-    clearTimeout(this._later);
-    this._later = setTimeout(() => this._note(), SETTLED);
+    this._address.later();
   }
 
   _show() {
@@ -89,14 +92,6 @@ export class Collide {
     const taken = { a: changes(this.bodies.a, record.a), b: changes(this.bodies.b, record.b) };
     Object.assign(this.bodies.a, taken.a);
     this.change("b", taken.b);
-  }
-
-  /** Write the scene into the address. */
-  _note() {
-    clearTimeout(this._later);
-    this._later = undefined;
-    if (this.app.part !== this) return;
-    history.replaceState(null, "", `#collide?${writeScene(this.bodies)}`);
   }
 
   /** React to a key on a body or on the tip of its velocity. */

@@ -19,7 +19,9 @@ export class Drawing {
     this._svg.addEventListener("pointerdown", (event) => this._grab(event));
     this._svg.addEventListener("pointermove", (event) => this._drag(event));
     for (const end of ["pointerup", "pointercancel"]) {
-      this._svg.addEventListener(end, () => { this._held = null; });
+      this._svg.addEventListener(end, ({ pointerId }) => {
+        if (this._held?.pointer === pointerId) this._held = null;
+      });
     }
     this._svg.addEventListener("keydown", (event) => {
       const { side, tip } = event.target.dataset ?? {};
@@ -121,7 +123,7 @@ export class Drawing {
 
   _grab(event) {
     const held = event.target.closest("[data-side]");
-    if (!held || event.button > 0) return;
+    if (!held || event.button > 0 || this._held) return;
     const { side, tip } = held.dataset;
     const body = this._bodies[side];
     event.preventDefault();
@@ -129,12 +131,13 @@ export class Drawing {
     const { x, y } = this._place(event);
     const isTip = tip !== undefined;
     const [from] = (isTip ? body.tip : body.place).transform.baseVal;
-    this._held = { side, isTip, x: x - from.matrix.e, y: y - from.matrix.f };
+    const pointer = event.pointerId;
+    this._held = { pointer, side, isTip, x: x - from.matrix.e, y: y - from.matrix.f };
     (isTip ? body.tip : body.region).focus({ preventScroll: true });
   }
 
   _drag(event) {
-    if (!this._held) return;
+    if (this._held?.pointer !== event.pointerId) return; // of a second finger
     const { side, isTip, x, y } = this._held;
     const at = this._place(event);
     if (isTip) this._react.aim(side, at.x - x, at.y - y);

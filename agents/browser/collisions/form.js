@@ -32,7 +32,7 @@ export class Form {
     };
     // What can't be is put right when one goes on.
     this._form.onchange = ({ target }) => {
-      if (target.type === "number") this.show(this._side, this._body);
+      if (target.type === "number") target.value = this._body[target.name];
     };
     for (const button of this._form.querySelectorAll("[data-turn]")) {
       button.onclick = () => this.turn(Number(button.dataset.turn));
@@ -124,6 +124,8 @@ export class Form {
     } else {
       const number = field.valueAsNumber;
       const [low, high] = LIMITS[name];
+      // Who types 0.5 begins with 0; for none there is a box.
+      if (name === "mass" && number === 0) return;
       if (number >= low && number <= high) this._change({ [name]: number });
     }
   }

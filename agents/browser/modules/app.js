@@ -86,7 +86,11 @@ class App {
     for (const scene of document.querySelectorAll(".scene")) {
       scene.hidden = scene.id !== `scene-${part.scene}`;
     }
+    // A scene that is not open yet has nothing that one could change.
+    const places = part.scene ? document.querySelectorAll(`#panel-${name}, #scene-${name}`) : [];
+    for (const place of places) place.inert = true;
     await part.enter();
+    for (const place of places) place.inert = false;
     if (this.part !== part) return; // another one was asked for meanwhile
     this.stage.sheet();
     document.querySelector(".bar").hidden = Boolean(part.still);

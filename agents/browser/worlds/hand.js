@@ -17,9 +17,9 @@ export class Hand {
     this._held = undefined;
     const { canvas } = world.arena;
     canvas.addEventListener("pointerdown", (event) => this._grab(event));
-    canvas.addEventListener("pointermove", (event) => this._move(event));
-    canvas.addEventListener("pointerup", (event) => this._let(event));
-    canvas.addEventListener("pointercancel", () => this.drop());
+    canvas.addEventListener("pointermove", (event) => this._isHeld(event) && this._move(event));
+    canvas.addEventListener("pointerup", (event) => this._isHeld(event) && this._let(event));
+    canvas.addEventListener("pointercancel", (event) => this._isHeld(event) && this.cancel());
     canvas.addEventListener("keydown", (event) => {
       if (!this._press(event)) return;
       event.preventDefault();
@@ -35,6 +35,22 @@ export class Hand {
   /** Hold nothing any more. */
   drop() {
     this._held = undefined;
+  }
+
+  /** Take back what the pointer does; a body that it holds while time runs flies on. */
+  cancel() {
+    if (!this._held) return;
+    if (this.aims || !this._world.runs) {
+      this._world.undo();
+      return;
+    }
+    this.drop();
+    this._world.edited();
+  }
+
+  /** Whether an event is of the pointer that holds something, and not of a second finger. */
+  _isHeld({ pointerId }) {
+    return this._held?.pointer === pointerId;
   }
 
   /** Let a body that is held fly to the pointer in the next step. */
@@ -72,7 +88,9 @@ export class Hand {
     if (what === undefined) return;
     const grip = [x - from[0], y - from[1]];
     const trail = [[x, y, event.timeStamp]];
-    this._held = { what, handle, at: [x, y], from: [x, y], grip, trail };
+    this._held = {
+      pointer: event.pointerId, what, handle, at: [x, y], from: [x, y], grip, trail,
+    };
   }
 
   /** Find what is at a place: the lamp, a tip, a body, or room for what is thrown in. */
@@ -105,7 +123,6 @@ export class Hand {
 
   _move(event) {
     const held = this._held;
-    if (!held) return;
     const { _world: world } = this;
     held.at = world.arena.place(event);
     held.trail.push([...held.at, event.timeStamp]);
@@ -137,7 +154,6 @@ export class Hand {
 
   _let(event) {
     const held = this._held;
-    if (!held) return;
     const { _world: world } = this;
     this._held = undefined;
     if (held.what === "body" && world.runs) this._fling(held, event.timeStamp);

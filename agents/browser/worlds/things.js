@@ -4,7 +4,7 @@ import { readPart } from "arkanoid/bodies";
 
 /** What a number may be. */
 export const LIMITS = {
-  x: [-1000, 1000], y: [-1000, 1000], vx: [-1000, 1000], vy: [-1000, 1000], width: [0, 100],
+  x: [-1e9, 1e9], y: [-1e9, 1e9], vx: [-1e6, 1e6], vy: [-1e6, 1e6], width: [0, 100],
   height: [0.1, 100], turn: [0, 359], mass: [0, 1e8], restitution: [0, 1], sensor: [0, 1],
 };
 const WHOLE = ["turn", "sensor"];

@@ -21,7 +21,7 @@ export class Tray {
     this._form.oninput = ({ target }) => this._read(target);
     // What can't be is put right when one goes on.
     this._form.onchange = ({ target }) => {
-      if (target.type === "number") this.show(this._thing, this._isChosen);
+      if (target.type === "number") target.value = this._thing[target.name];
     };
     this.show(this.next, false);
   }
@@ -35,7 +35,7 @@ export class Tray {
       isChosen ? `This ${kind}` : "Throw in";
     for (const part of this._form.querySelectorAll(".for-chosen")) part.hidden = !isChosen;
     const isWall = kind === "wall";
-    this._fields.kind.disabled = isWall;
+    this._fields.kind.parentElement.hidden = isWall;
     if (!isWall) this._fields.kind.value = kind;
     this._show("width", MEASURES[kind]?.[0] ?? (kind === "point" || isWall ? undefined : "size"));
     this._show("height", MEASURES[kind]?.[1]);
@@ -78,6 +78,8 @@ export class Tray {
       const number = field.valueAsNumber;
       const [low, high] = LIMITS[name];
       const isShape = ["width", "height", "turn"].includes(name);
+      // Who types 0.5 begins with 0; for none there is a box.
+      if (name === "mass" && number === 0) return;
       if (number >= low && number <= high) this._take({ [name]: number }, isShape);
     }
   }

@@ -1,5 +1,6 @@
 // A world to throw things in: what is in it, how its time runs, and what one may undo.
 
+import { Address } from "arkanoid/address";
 import { Arena } from "arkanoid/arena";
 import { Hand } from "arkanoid/hand";
 import { Live } from "arkanoid/live_world";
@@ -12,7 +13,6 @@ const STEP = 1 / 60; // of time, at the usual speed
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 const MOST_DUE = 3; // steps that are made up for, if pictures are late
 const MOST_UNDONE = 20;
-const SETTLED = 300; // milliseconds after which the address has the scene
 const FIRST = "shapes";
 
 export class World {
@@ -32,6 +32,7 @@ export class World {
       change: (changes, isShape) => this.change(changes, isShape),
     });
     this.hand = new Hand(this);
+    this._address = new Address(() => this.things.writeScene(this._start));
     this.chosen = undefined;
     this.runs = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this._speed = SPEEDS.indexOf(1);
@@ -40,14 +41,19 @@ export class World {
   }
 
   async enter() {
-    this.live ??= new Live(await this.app.arkanoid.sandbox());
+    const turn = (this._turn = Symbol());
+    this._sandbox ??= this.app.arkanoid.sandbox();
+    const sandbox = await this._sandbox;
+    if (this._turn !== turn) return; // one came again meanwhile
+    this.live ??= new Live(sandbox);
     const scene = this.things.readScene(location.hash);
     if (scene) this.load(scene);
-    else if (!this._start) this.load(this.things.ready(FIRST));
+    else if (this._start) this._address.now();
+    else this.load(this.things.ready(FIRST));
     this._due = 0;
     this._then = undefined;
     const picture = (now) => {
-      if (this.app.part !== this) return;
+      if (this.app.part !== this || this._turn !== turn) return;
       requestAnimationFrame(picture);
       this._picture(now);
     };
@@ -56,8 +62,8 @@ export class World {
   }
 
   leave() {
-    if (this._later) this._note();
-    this.hand.drop();
+    this.hand.cancel();
+    this._address.leave();
   }
 
   press() {}
@@ -65,7 +71,7 @@ export class World {
   release() {}
 
   loseFocus() {
-    this.hand.drop();
+    this.hand.cancel();
   }
 
   focus() {
@@ -81,7 +87,7 @@ export class World {
 
   _lay(scene) {
     this.hand.drop();
-    this.chosen = undefined;
+    this.chosen = this._changed = undefined;
     this.gravity = scene.gravity;
     this.lamp = scene.lamp && [...scene.lamp];
     this.meters.clear();
@@ -117,6 +123,7 @@ export class World {
     this.hand.drop();
     this.live.restore(kept.world);
     Object.assign(this, { chosen: kept.chosen, gravity: kept.gravity, lamp: kept.lamp });
+    this._changed = undefined;
     this._start = kept.start;
     this.meters.hits = kept.hits;
     document.getElementById("gravity").value = this.gravity;
@@ -125,7 +132,7 @@ export class World {
     this._tell("");
     this._showChosen();
     this._showState();
-    this._noteLater();
+    this._address.later();
   }
 
   /** Throw in what the tray holds; return its handle. */
@@ -145,9 +152,8 @@ export class World {
   change(changes, isShape) {
     const thing = this.live.thing(this.chosen);
     if (!thing) return;
-    // One drags a slider, and undoes it at once.
     const name = Object.keys(changes).join();
-    if (this._changed !== `${this.chosen} ${name}`) this.remember();
+    this._rememberOnce(`${this.chosen} ${name}`);
     const changed = { ...thing, ...changes };
     if (isShape) {
       this.live.remove(this.chosen);
@@ -156,6 +162,12 @@ export class World {
     this._changed = `${this.chosen} ${name}`;
     this.tray.show(changed, true);
     this.edited(true);
+  }
+
+  /** Remember what was before somebody changes something, in many steps as a slider does. */
+  _rememberOnce(what) {
+    if (this._changed !== what) this.remember();
+    this._changed = what;
   }
 
   remove() {
@@ -178,7 +190,7 @@ export class World {
     if (!isForm) this._changed = undefined;
     this._start = this._now();
     this._shown = undefined;
-    this._noteLater();
+    this._address.later();
     this._showState();
   }
 
@@ -300,19 +312,6 @@ export class World {
     return { things: this.live.things(), gravity, lamp: lamp && [...lamp] };
   }
 
-  _noteLater() {
-    clearTimeout(this._later);
-    this._later = setTimeout(() => this._note(), SETTLED);
-  }
-
-  /** Write the scene into the address. */
-  _note() {
-    clearTimeout(this._later);
-    this._later = undefined;
-    if (this.app.part !== this) return;
-    history.replaceState(null, "", this.things.writeScene(this._start));
-  }
-
   _button(name) {
     return document.getElementById(`world-${name}`);
   }
@@ -339,13 +338,16 @@ export class World {
       slower: () => this.hurry(-1), faster: () => this.hurry(1),
     };
     for (const [name, deed] of Object.entries(deeds)) this._button(name).onclick = deed;
-    document.getElementById("gravity").oninput = ({ target }) => {
-      const number = target.valueAsNumber;
+    const gravity = document.getElementById("gravity");
+    gravity.oninput = () => {
+      const number = gravity.valueAsNumber;
       if (!(number >= 0 && number <= 100)) return;
-      this.remember();
+      this._rememberOnce("gravity");
       this.gravity = number;
-      this.edited();
+      this.edited(true);
     };
+    // What can't be is put right when one goes on.
+    gravity.onchange = () => { gravity.value = this.gravity; };
     document.getElementById("lamp").onchange = ({ target }) => {
       this.remember();
       this.lamp = target.checked ? [0, 0] : null;

@@ -246,3 +246,14 @@ def test_levels_for_the_page(run: RunFolder, tmp_path: Path) -> None:
     assert not start["boss"]
     with pytest.raises(SettingsError, match="no level 'nowhere'"):
         asked_levels(experiment, "nowhere")
+
+
+def test_a_slow_look_does_not_stop_the_news(
+    run: RunFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first one loads libraries: no news came for a minute then."""
+    monkeypatch.setattr(following, "_SHARE", 10**9)
+    followed = follow(run)
+    before = following.time.monotonic()
+    followed.news()
+    assert followed._due - before < 60

@@ -1,0 +1,243 @@
+"""What went wrong in World and Collide: quick changes, second fingers, half-typed numbers."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from helpers.browser import DESKTOP, PHONE, visit, wait_until
+
+STILL = "#world?gravity=5&b=Particle,-4,0,0,0,1&b=AxisAlignedRectangle,4,0,0,0,2,2"
+APART = "#collide?a=Particle,-3,0,2,0&b=Particle,3,0"
+PICTURES = """async () => {
+  const { arena } = arkanoid.part;
+  const { paint } = arena;
+  const { promise, resolve } = Promise.withResolvers();
+  let [painted, pictures] = [0, 0];
+  arena.paint = function (...shown) { painted += 1; return paint.apply(this, shown); };
+  const count = () => {
+    pictures += 1;
+    if (pictures < 10) requestAnimationFrame(count);
+    else resolve();
+  };
+  requestAnimationFrame(count);
+  await promise;
+  return painted / pictures;
+}"""
+SLOWLY = """([name, part]) => {
+  const { arkanoid: game } = arkanoid;
+  const open = game[name].bind(game);
+  game[name] = async () => { await new Promise((go) => setTimeout(go, 700)); return open(); };
+  location.hash = part;
+}"""
+
+
+@pytest.fixture
+def world(browser: Any, file: Path) -> Iterator[Any]:
+    """Return the page with two bodies, while time stands still."""
+    with visit(browser, file.as_uri() + STILL, **DESKTOP) as page:
+        wait_until(page, "part.live")
+        page.click("#world-pause")
+        yield page
+
+
+@pytest.fixture
+def phone(browser: Any, file: Path) -> Iterator[Any]:
+    """Return the same on a telephone."""
+    with visit(browser, file.as_uri() + STILL, **{**PHONE, "reduced_motion": "reduce"}) as page:
+        wait_until(page, "part.live && !part.runs")
+        page.locator("#world-picture").scroll_into_view_if_needed()
+        yield page
+
+
+def things(page: Any) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = page.evaluate("arkanoid.part.live.things()")
+    return found
+
+
+def pixel(page: Any, x: float, y: float) -> tuple[float, float]:
+    box = page.locator("#world-picture").bounding_box()
+    unit = box["width"] / 24.9
+    return box["x"] + box["width"] / 2 + unit * x, box["y"] + box["height"] / 2 - unit * y
+
+
+class Fingers:
+    """Touches a page at as many places as there are fingers."""
+
+    def __init__(self, page: Any) -> None:
+        self._session = page.context.new_cdp_session(page)
+
+    def __call__(self, kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y, "id": finger} for finger, (x, y) in enumerate(places)]
+        message = {"type": f"touch{kind}", "touchPoints": points}
+        self._session.send("Input.dispatchTouchEvent", message)
+
+
+def throw(page: Any) -> None:
+    page.mouse.click(*pixel(page, 0, 4))
+
+
+def test_scenes_are_painted_once(browser: Any, file: Path) -> None:
+    """Each link to a scene painted the world once more in every picture."""
+    with visit(browser, file.as_uri() + "#world", **DESKTOP) as page:
+        wait_until(page, "part.live")
+        for name in ("cradle", "pile", "gate"):
+            page.click(f"#world-scenes a[data-scene={name}]")
+            wait_until(page, f"part._start.name === '{name}'")
+        assert page.evaluate(PICTURES) <= 1.2
+
+
+def test_leaving_right_after_a_change(world: Any) -> None:
+    """The address became that of the world, and the page showed the game."""
+    world.evaluate("arkanoid.part.remove(arkanoid.part.choose(0)); location.hash = '#play'")
+    wait_until(world, "part?.phase === 'ready'")
+    world.wait_for_timeout(400)
+    assert world.evaluate("location.hash") == "#play"
+
+
+def test_a_link_right_after_a_change(world: Any) -> None:
+    """It was overwritten: the scene did not open."""
+    throw(world)
+    world.evaluate("document.querySelector('#world-scenes a[data-scene=pile]').click()")
+    wait_until(world, "part._start.name === 'pile'")
+    world.wait_for_timeout(400)
+    assert world.evaluate("location.hash") == "#world?scene=pile"
+
+
+def test_coming_back_to_the_world(world: Any) -> None:
+    """The address did not hold it any more: reloaded, it was gone."""
+    throw(world)
+    world.get_by_role("link", name="Play", exact=True).click()
+    wait_until(world, "part?.phase === 'ready'")
+    world.get_by_role("link", name="World", exact=True).click()
+    wait_until(world, "location.hash.split('&b=').length === 4")
+    before = things(world)
+    world.emulate_media(reduced_motion="reduce")
+    world.reload()
+    wait_until(world, "globalThis.arkanoid?.part?.live")
+    assert things(world) == before
+
+
+def test_coming_back_to_a_collision(browser: Any, file: Path) -> None:
+    """As for the world; and leaving at once does not change the address of the game."""
+    with visit(browser, file.as_uri() + APART, **DESKTOP) as page:
+        page.evaluate("arkanoid.part.change('a', { x: -2 }); location.hash = '#play'")
+        wait_until(page, "part?.phase === 'ready'")
+        page.wait_for_timeout(400)
+        assert page.evaluate("location.hash") == "#play"
+        page.get_by_role("link", name="Collide").click()
+        wait_until(page, "location.hash.startsWith('#collide?a=Particle,-2,0')")
+
+
+@pytest.mark.parametrize("part", ["world", "collide"])
+def test_a_part_that_opens_slowly(browser: Any, file: Path, part: str) -> None:
+    """Its buttons and fields failed; left and opened again meanwhile, the world was empty."""
+    with visit(browser, file.as_uri(), **DESKTOP) as page:
+        kernels = {"world": "sandbox", "collide": "meeting"}[part]
+        page.evaluate(SLOWLY, [kernels, f"#{part}"])
+        wait_until(page, f"part?.scene === '{part}'")
+        for button in page.locator(f"#scene-{part} button:visible").all():
+            box = button.bounding_box()
+            page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.evaluate("location.hash = '#play'")
+        wait_until(page, "!part.scene")
+        page.evaluate(f"location.hash = '#{part}'")
+        page.wait_for_timeout(1600)
+        if part == "world":
+            assert len(things(page)) > 5
+        else:
+            assert page.locator("#collisions .regions :is(polygon, circle)").count() == 2
+        page.locator(f"#panel-{part}").get_by_label("mass").first.click(trial=True)
+
+
+@pytest.mark.parametrize("part", ["world", "collide"])
+def test_typing_a_small_mass(browser: Any, file: Path, part: str) -> None:
+    """The 0 with which it begins meant none, and closed the field."""
+    scene = STILL if part == "world" else APART
+    with visit(browser, file.as_uri() + scene, **DESKTOP) as page:
+        wait_until(page, "part.live || part.opened")
+        if part == "world":
+            page.evaluate("arkanoid.part.choose(0)")
+        field = page.locator(f"#panel-{part} input[name=mass]")
+        field.select_text()
+        page.keyboard.type("0.5")
+        page.keyboard.press("Enter")
+        told = "live.thing(arkanoid.part.chosen)" if part == "world" else "bodies.b"
+        assert page.evaluate(f"arkanoid.part.{told}.mass") == 0.5
+        field.fill("0")
+        page.keyboard.press("Enter")
+        assert field.input_value() == "0.5"
+
+
+def test_typing_gravity(world: Any) -> None:
+    """Each digit was a change to undo; one too many stayed in the field."""
+    field = world.locator("#gravity")
+    field.select_text()
+    world.keyboard.type("500")
+    world.keyboard.press("Tab")
+    assert field.input_value() == "50"
+    assert world.evaluate("arkanoid.part.gravity") == 50
+    world.click("#world-undo")
+    assert world.evaluate("arkanoid.part.gravity") == 5
+    assert world.locator("#world-undo").is_disabled()
+
+
+def test_a_slider_after_undo(world: Any) -> None:
+    """What it did then could not be undone."""
+    world.evaluate("arkanoid.part.choose(0)")
+    for value in ("0.5", "0.2"):
+        world.locator("#thing-restitution").fill(value)
+        world.click("#world-undo")
+        assert things(world)[0]["restitution"] == 1
+
+
+def test_a_second_finger(phone: Any) -> None:
+    """The body that the first one holds flew to it."""
+    touch, other = Fingers(phone), pixel(phone, 8, -4)
+    touch("Start", pixel(phone, -4, 0))
+    touch("Move", pixel(phone, -5, 2))
+    touch("Start", pixel(phone, -5, 2), other)
+    touch("Move", pixel(phone, -6, 3), other)
+    touch("Move", pixel(phone, -6, 3), pixel(phone, 8, -5))
+    touch("End")
+    held, _ = things(phone)
+    assert (held["x"], held["y"]) == pytest.approx((-6, 3), abs=0.1)
+
+
+def test_a_touch_that_the_system_takes(phone: Any) -> None:
+    """It threw something in, which could not be undone, and which the address lacked."""
+    touch = Fingers(phone)
+    touch("Start", pixel(phone, 0, 4))
+    touch("Move", pixel(phone, 2, 5))
+    assert len(things(phone)) == 3
+    touch("Cancel")
+    assert len(things(phone)) == 2
+    assert phone.locator("#world-undo").is_disabled()
+
+
+def test_a_second_finger_in_a_collision(browser: Any, file: Path) -> None:
+    """As in a world: the body flew to it."""
+    with visit(browser, file.as_uri() + APART, **DESKTOP) as page:
+        wait_until(page, "part.opened")
+        box = page.locator("#collisions .regions .a").bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x, y - 40)
+        before = page.evaluate("arkanoid.part.bodies.a.y")
+        for kind in ("pointermove", "pointerup"):
+            other = {"pointerId": 77, "clientX": x, "clientY": y + 90, "bubbles": True}
+            page.locator("#collisions").dispatch_event(kind, other)
+        assert page.evaluate("arkanoid.part.bodies.a.y") == before > 0.5
+        page.mouse.move(x, y - 60)
+        assert page.evaluate("arkanoid.part.bodies.a.y") > before
+        page.mouse.up()
+
+
+def test_a_body_that_is_far_away(browser: Any, file: Path) -> None:
+    """The address brought it back to 1000 units from here."""
+    scene = "#world?gravity=0&b=Particle,0,-20116.5,0,-2005.25"
+    context = {**DESKTOP, "reduced_motion": "reduce"}
+    with visit(browser, file.as_uri() + scene, **context) as page:
+        wait_until(page, "part.live")
+        assert (things(page)[0]["y"], things(page)[0]["vy"]) == (-20116.5, -2005.25)
