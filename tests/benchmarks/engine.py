@@ -15,8 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import version
 
 import numpy as np
-import sandboxes
-from engines import PEERS, Engine, installed_peers
+from engines import PEERS, Engine, installed_peers, sandboxes
 from engines.arkanoid_engine import Arkanoid, Batch, ManySteps
 from engines.scene import (
     BALL_SPEED,

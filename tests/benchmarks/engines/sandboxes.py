@@ -9,9 +9,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from engines import installed_sandboxes
-from engines.arkanoid_sandbox import ArkanoidSandbox
-from engines.sandbox import STEP, Sandbox
+
+from . import installed_sandboxes
+from .arkanoid_sandbox import ArkanoidSandbox
+from .sandbox import STEP, Sandbox
 
 GRAVITY = 10.0  # metres a second squared
 WALKERS = 40
