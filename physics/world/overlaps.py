@@ -7,13 +7,12 @@ import math
 
 from ..kernels import kernel
 from ..pairs.response import shares
-from ..pairs.results import NO_CONTACT
-from ..pairs.table import contact_between
 from ..tolerances import RELAX_PAIRWISE, RELAX_REACH, RELAX_ROUNDS, RELAX_STEPS, RESOLVED
-from .courses import margins_of, motion_at, move_to
+from .courses import motion_at, move_to
 from .events import enter_sensor, has_room, write_event
 from .lookup.boxes import first_margin, fit, follow
 from .lookup.neighbours import find_near, sort_items
+from .meetings.contacts import contact_at, contact_within, solid_contact
 from .meetings.pair import bounce_pair
 from .meetings.solver import resolve
 from .meetings.touches import append, are_joined, clear_group
@@ -23,7 +22,6 @@ from .view import (
     WorldView,
     boxes_of,
     clock_of,
-    edges_of,
     members_of,
     motions_of,
     moving_of,
@@ -68,12 +66,8 @@ def relax_overlaps(world: WorldView) -> bool:
 @kernel
 def _freshen_partners(world: WorldView) -> None:
     """Let those be fresh that a fresh body overlaps: so it does not matter which of them it is."""
-    motions, near, order, traits = (
-        motions_of(world),
-        near_of(world),
-        order_of(world),
-        traits_of(world),
-    )
+    clock, motions, traits = clock_of(world), motions_of(world), traits_of(world)
+    near, order = near_of(world), order_of(world)
     for place in range(order.shape[0]):
         body = order[place]
         if not motions[traits[body].slot].fresh:
@@ -82,7 +76,7 @@ def _freshen_partners(world: WorldView) -> None:
             other = near[index]
             if traits[other].inverse_mass == 0.0 or motions[traits[other].slot].fresh:
                 continue
-            if _solid_contact(world, body, other)[0]:
+            if solid_contact(world, body, other, clock.time, clock.time_low)[0]:
                 _begin_anew(world, other)
 
 
@@ -139,7 +133,7 @@ def _join_close(world: WorldView, a: int, b: int, reach: float) -> None:
     if traits[a].sensor >= 0 or traits[b].sensor >= 0 or are_joined(world, a, b):
         return
     clock = clock_of(world)
-    found, normal_x, normal_y, depth, _, _ = _contact_within(
+    found, normal_x, normal_y, depth, _, _ = contact_within(
         world, a, b, clock.time, clock.time_low, -reach
     )
     if not found or depth == math.inf:
@@ -156,14 +150,16 @@ def _join_close(world: WorldView, a: int, b: int, reach: float) -> None:
 def _relax_body(world: WorldView, slot: int) -> float:
     """Move a fresh body out of others; return the depth of the deepest overlap."""
     traits, motions, near = traits_of(world), motions_of(world), near_of(world)
-    body = moving_of(world)[slot]
+    clock, body = clock_of(world), moving_of(world)[slot]
     deepest = 0.0
     for index in range(_find_close(world, slot)):
         other = near[index]
         theirs = traits[other].slot
         if theirs >= 0 and other < body and motions[theirs].fresh:
             continue  # it was its turn
-        found, normal_x, normal_y, depth, _, _ = _solid_contact(world, body, other)
+        found, normal_x, normal_y, depth, _, _ = solid_contact(
+            world, body, other, clock.time, clock.time_low
+        )
         if found:
             _begin_anew(world, body)
             _begin_anew(world, other)
@@ -222,42 +218,6 @@ def _follow(world: WorldView, body: int) -> None:
 
 
 @kernel
-def _solid_contact(
-    world: WorldView, a: int, b: int
-) -> tuple[bool, float, float, float, float, float]:
-    """Return (found, normal_x, normal_y, depth, x, y) of two bodies, if neither is a sensor."""
-    one = traits_of(world)[a]
-    other = traits_of(world)[b]
-    if one.sensor >= 0 or other.sensor >= 0:
-        return NO_CONTACT
-    return _contact_at(world, a, b, clock_of(world).time, clock_of(world).time_low)
-
-
-@kernel
-def _contact_at(
-    world: WorldView, a: int, b: int, now: float, now_low: float
-) -> tuple[bool, float, float, float, float, float]:
-    """Return the contact of two bodies at a time, with the point in the world's coordinates."""
-    return _contact_within(world, a, b, now, now_low, 0.0)
-
-
-@kernel
-def _contact_within(
-    world: WorldView, a: int, b: int, now: float, now_low: float, least: float
-) -> tuple[bool, float, float, float, float, float]:
-    """Return the same of two bodies that overlap by more than a depth; below 0 it is a gap."""
-    ax, ay, _, _ = motion_at(world, a, now, now_low)
-    bx, by, _, _ = motion_at(world, b, now, now_low)
-    first, second = traits_of(world)[a].collider, traits_of(world)[b].collider
-    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
-    margin_x, margin_y = margin_x + least, margin_y + least
-    found, normal_x, normal_y, depth, x, y = contact_between(
-        shapes_of(world), edges_of(world), first, second, bx - ax, by - ay, margin_x, margin_y
-    )
-    return found, normal_x, normal_y, depth, ax + x, ay + y
-
-
-@kernel
 def _move_apart(
     world: WorldView, a: int, b: int, normal_x: float, normal_y: float, depth: float
 ) -> None:
@@ -306,7 +266,7 @@ def _resolve_pair(
     """Relax and bounce two bodies if they overlap; return how many hits there are."""
     one, other = traits_of(world)[a], traits_of(world)[b]
     now, now_low = progress_of(world).end, progress_of(world).end_low
-    found, normal_x, normal_y, depth, x, y = _contact_at(world, a, b, now, now_low)
+    found, normal_x, normal_y, depth, x, y = contact_at(world, a, b, now, now_low)
     if not found:
         return count
     if one.sensor >= 0 or other.sensor >= 0:

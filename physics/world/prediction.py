@@ -7,7 +7,6 @@ systems, J. Comput. Phys. 94, 1991). A plan holds until one of its two bodies ch
 import math
 
 from ..kernels import kernel
-from ..pairs.table import contact_between
 from ..pairs.touching import margin_along
 from ..tolerances import FLATTEST, MOST_RESTS, TOUCH
 from .clock_time import elapsed, is_earlier, later
@@ -16,6 +15,7 @@ from .lookup.boxes import time_to_leave
 from .lookup.inside import find_inside
 from .lookup.neighbours import find_near, has_list
 from .lookup.tree import NO_ONE
+from .meetings.contacts import solid_contact
 from .meetings.impact import impact_of, may_meet
 from .meetings.passing import has_reached, passes_by
 from .meetings.ties import is_straighter
@@ -23,7 +23,6 @@ from .records import HELD, INDEX_BITS, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from .tournament import replay
 from .view import (
     WorldView,
-    edges_of,
     list_of,
     motions_of,
     moving_of,
@@ -338,22 +337,16 @@ def _find_event(world: WorldView, slot: int, now: float, now_low: float, only_la
 @kernel
 def _overlap(world: WorldView, a: int, b: int, now: float, now_low: float) -> bool:
     """Return whether two solid bodies overlap by more than touching, also if they fly apart."""
-    one, other = traits_of(world)[a], traits_of(world)[b]
-    if one.sensor >= 0 or other.sensor >= 0:
-        return False
     ax, ay, _, _ = motion_at(world, a, now, now_low)
     bx, by, _, _ = motion_at(world, b, now, now_low)
-    dx, dy = bx - ax, by - ay
-    shape, their_shape = shapes_of(world)[one.collider], shapes_of(world)[other.collider]
-    if dx + their_shape.lower_x > shape.upper_x or dx + their_shape.upper_x < shape.lower_x:
+    one = shapes_of(world)[traits_of(world)[a].collider]
+    other = shapes_of(world)[traits_of(world)[b].collider]
+    # Most boxes do not overlap; that costs little to see.
+    if bx + other.lower_x > ax + one.upper_x or bx + other.upper_x < ax + one.lower_x:
         return False
-    if dy + their_shape.lower_y > shape.upper_y or dy + their_shape.upper_y < shape.lower_y:
+    if by + other.lower_y > ay + one.upper_y or by + other.upper_y < ay + one.lower_y:
         return False
-    margin_x, margin_y = margins_of(world, a, b, ax, ay, bx, by)
-    shapes, edges = shapes_of(world), edges_of(world)
-    return contact_between(shapes, edges, one.collider, other.collider, dx, dy, margin_x, margin_y)[
-        0
-    ]
+    return bool(solid_contact(world, a, b, now, now_low)[0])
 
 
 @kernel

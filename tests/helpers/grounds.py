@@ -2,9 +2,21 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from arkanoid.physics import AxisAlignedRectangle, Body, Collider, Convex, Particle, Rectangle
+from arkanoid.physics import (
+    HIT,
+    AxisAlignedRectangle,
+    Body,
+    Collider,
+    Convex,
+    Particle,
+    Rectangle,
+    World,
+)
+
+from .bodies import DISC
 
 Rng = np.random.Generator
 KINDS = ("disc", "point", "box", "rectangle", "turned", "polygon", "keel", "spike")
@@ -85,3 +97,21 @@ def drop(shape: Collider, frame: Frame) -> float:
     """Return how far a shape reaches down from its position."""
     ends = [frame.back(edge.start_x, edge.start_y)[1] for edge in shape.edges]
     return shape.rounding - min(ends, default=0.0)
+
+
+# What lands on the seam of two tiles of 2 by 2, the second to the right of the first.
+LANDINGS = (
+    (Rectangle(1, 1, math.pi / 4), (1, 2 + math.sqrt(0.5)), (0, -1)),
+    (Particle(0), (0, 2), (1, -1)),
+    (Particle(0), (2, 2), (-1, -1)),
+)
+
+
+def run_edited(bodies: list[Body], edit: Any, others: int) -> Any:
+    """Return the hits of a world that is edited before they happen, among others far away."""
+    far = [Body(DISC, (100 + 3 * index, 0), (0, 1), 1) for index in range(others)]
+    world = World([*bodies, *far])
+    assert len(world.step(0.5)) == 0
+    edit(world)
+    hits = world.step(2.0)
+    return hits[hits["kind"] == HIT][["time", "normal", "point", "impulse"]]

@@ -5,33 +5,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arkanoid.physics import HIT, AxisAlignedRectangle, Body, Collider, Particle, Rectangle, World
+from arkanoid.physics import AxisAlignedRectangle, Body, Collider, Rectangle, World
 from helpers.bodies import DISC
+from helpers.grounds import LANDINGS, run_edited
 
 TILE = Body(AxisAlignedRectangle(2, 2))
 NEXT_TILE = Body(TILE.collider, (2, 0))
 SPIKE = Rectangle(1, 1, math.pi / 4)
 
 
-def run(bodies: list[Body], edit: Any, others: int) -> Any:
-    """Return the hits of a world that is edited before they happen, among others far away."""
-    far = [Body(DISC, (100 + 3 * index, 0), (0, 1), 1) for index in range(others)]
-    world = World([*bodies, *far])
-    assert len(world.step(0.5)) == 0
-    edit(world)
-    hits = world.step(2.0)
-    return hits[hits["kind"] == HIT][["time", "normal", "point", "impulse"]]
-
-
 @pytest.mark.parametrize("others", [0, 20])
-@pytest.mark.parametrize(
-    ("shape", "place", "velocity"),
-    [
-        (SPIKE, (1, 2 + math.sqrt(0.5)), (0, -1)),
-        (Particle(0), (0, 2), (1, -1)),
-        (Particle(0), (2, 2), (-1, -1)),
-    ],
-)
+@pytest.mark.parametrize(("shape", "place", "velocity"), LANDINGS)
 def test_a_tile_that_comes_or_goes_makes_or_ends_a_seam(
     shape: Collider, place: Any, velocity: Any, others: int
 ) -> None:
@@ -40,16 +24,16 @@ def test_a_tile_that_comes_or_goes_makes_or_ends_a_seam(
     Nobody plans to meet that next tile; yet the plan depends on it.
     """
     body = Body(shape, place, velocity, 1)
-    level = run([TILE, body, NEXT_TILE], lambda world: None, others)
-    corner = run([TILE, body], lambda world: None, others)
+    level = run_edited([TILE, body, NEXT_TILE], lambda world: None, others)
+    corner = run_edited([TILE, body], lambda world: None, others)
     assert level["normal"].tolist() in ([[0, 1]], [[0, -1]])
     assert level["normal"].tolist() != corner["normal"].tolist()
-    come = run([TILE, body], lambda world: world.add(NEXT_TILE), others)
-    gone = run([TILE, body, NEXT_TILE], lambda world: world.remove(2), others)
-    off = run([TILE, body, NEXT_TILE], lambda world: world.change(2, active=False), others)
-    away = run([TILE, body, NEXT_TILE], lambda world: world.place(2, (50, 50)), others)
-    masked = run([TILE, body, NEXT_TILE], lambda world: world.change(2, mask=0), others)
-    sensor = run([TILE, body, NEXT_TILE], lambda world: world.change(2, sensor=True), others)
+    come = run_edited([TILE, body], lambda world: world.add(NEXT_TILE), others)
+    gone = run_edited([TILE, body, NEXT_TILE], lambda world: world.remove(2), others)
+    off = run_edited([TILE, body, NEXT_TILE], lambda world: world.change(2, active=False), others)
+    away = run_edited([TILE, body, NEXT_TILE], lambda world: world.place(2, (50, 50)), others)
+    masked = run_edited([TILE, body, NEXT_TILE], lambda world: world.change(2, mask=0), others)
+    sensor = run_edited([TILE, body, NEXT_TILE], lambda world: world.change(2, sensor=True), others)
     assert come.tobytes() == level.tobytes()
     for edited in (gone, off, away, masked, sensor):
         assert edited.tobytes() == corner.tobytes()

@@ -6,9 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arkanoid.physics import HIT, AxisAlignedRectangle, Body, Collider, Particle, Rectangle, World
-from helpers.bodies import DISC
-from helpers.grounds import CORNERS, FORMS, KINDS, decimal, drop, random_frame, random_mover
+from arkanoid.physics import AxisAlignedRectangle, Body, Collider, Rectangle, World
+from helpers.grounds import (
+    CORNERS,
+    FORMS,
+    KINDS,
+    LANDINGS,
+    decimal,
+    drop,
+    random_frame,
+    random_mover,
+    run_edited,
+)
 
 UNIT_ROUNDOFF = 2.0**-53
 TILE = AxisAlignedRectangle(2, 2)
@@ -85,25 +94,8 @@ def test_what_lands_on_a_platform_bounces_as_off_one_body(kind: str) -> None:
         assert turn <= 64 * UNIT_ROUNDOFF * (abs(x) + abs(y) + 12 * width) / width
 
 
-def run(bodies: list[Body], edit: Any, others: int) -> Any:
-    """Return the hits of a world that is edited before they happen, among others far away."""
-    far = [Body(DISC, (100 + 3 * index, 0), (0, 1), 1) for index in range(others)]
-    world = World([*bodies, *far])
-    assert len(world.step(0.5)) == 0
-    edit(world)
-    hits = world.step(2.0)
-    return hits[hits["kind"] == HIT][["time", "normal", "point", "impulse"]]
-
-
 @pytest.mark.parametrize("others", [0, 20])
-@pytest.mark.parametrize(
-    ("shape", "place", "velocity"),
-    [
-        (SPIKE, (1, 2 + math.sqrt(0.5)), (0, -1)),
-        (Particle(0), (0, 2), (1, -1)),
-        (Particle(0), (2, 2), (-1, -1)),
-    ],
-)
+@pytest.mark.parametrize(("shape", "place", "velocity"), LANDINGS)
 def test_a_tile_of_a_platform_that_comes_or_goes_makes_or_ends_a_seam(
     shape: Collider, place: Any, velocity: Any, others: int
 ) -> None:
@@ -112,13 +104,13 @@ def test_a_tile_of_a_platform_that_comes_or_goes_makes_or_ends_a_seam(
     later_tile = Body(TILE, (2 + 0.5 * DRIFT[0], 0.5 * DRIFT[1]), DRIFT)
     stays = Body(TILE, (2, 0), (0.5, 0.5))
     body = Body(shape, place, np.add(velocity, DRIFT), 1)
-    level = run([tile, body, next_tile], lambda world: None, others)
-    corner = run([tile, body], lambda world: None, others)
+    level = run_edited([tile, body, next_tile], lambda world: None, others)
+    corner = run_edited([tile, body], lambda world: None, others)
     assert level["normal"].tolist() in ([[0, 1]], [[0, -1]])
     assert level["normal"].tolist() != corner["normal"].tolist()
-    assert len(run([tile, body, stays], lambda world: None, others)) >= len(corner)
-    come = run([tile, body], lambda world: world.add(later_tile), others)
-    joined = run(
+    assert len(run_edited([tile, body, stays], lambda world: None, others)) >= len(corner)
+    come = run_edited([tile, body], lambda world: world.add(later_tile), others)
+    joined = run_edited(
         [tile, body, Body(TILE, (2, 50), DRIFT)],
         lambda world: world.place(2, later_tile.position),
         others,
@@ -134,5 +126,5 @@ def test_a_tile_of_a_platform_that_comes_or_goes_makes_or_ends_a_seam(
         lambda world: world.change(2, sensor=True),
     )
     for edit in edits:
-        edited = run([tile, body, next_tile], edit, others)
+        edited = run_edited([tile, body, next_tile], edit, others)
         assert edited.tobytes() == corner.tobytes()
