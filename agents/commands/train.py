@@ -92,6 +92,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         open_dataset(experiment.imitation.dataset, *spaces)
     check_installed(arguments.track)
     # Only now, with all settings known to be right, come the slow imports.
+    from ...envs.browser.shipped import offers_module
     from ..learn.starting import check_source, inherit
 
     if folder is None:
@@ -101,7 +102,9 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         if source is not None:
             inherit(folder, source, experiment)
     print(f"{experiment.name}: PPO on {experiment.env_id}, seed {experiment.seed}; {folder.path}")
-    print(f"follow   {arkanoid('watch', folder.path, '--web')}", flush=True)
+    if offers_module():
+        print(f"follow   {arkanoid('watch', folder.path, '--web')}")
+    sys.stdout.flush()
     with folder.locked():
         if resumed:
             folder.check_resumable()

@@ -51,9 +51,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     experiment = model.experiment(overrides)
     named = [Path(arguments.model)] if arguments.model else []
     level = ["--level", quoted(arguments.level)] if arguments.level else []
-    page = arkanoid("watch", *named, "--web", "--no-open", *level)
-    film = arkanoid("film", *named, "game.gif", *level)
-    require_screen(f"a film needs none: {film}; nor does a browser: {page}")
+    require_screen(_without_screen(named, level))
     from ...envs.play.show import run_show
     from ..measure.suites import WHOLE_GAMES, find_starts
 
@@ -67,3 +65,14 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
 
     show = Watching(experiment, load_policy(model, experiment), starts, report)
     return 130 if run_show(show, f"Arkanoid - {WATCH_KEYS}") else 0
+
+
+def _without_screen(named: list[Path], level: list[str]) -> str:
+    """Return which commands show the same without a screen."""
+    from ...envs.browser.shipped import offers_module
+
+    film = f"a film needs none: {arkanoid('film', *named, 'game.gif', *level)}"
+    if not offers_module():
+        return film
+    page = arkanoid("watch", *named, "--web", "--no-open", *level)
+    return f"{film}; nor does a browser: {page}"

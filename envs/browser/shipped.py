@@ -6,7 +6,7 @@ arkanoid.envs.browser.shipped`` writes it before they are built; git does not ke
 
 from pathlib import Path
 
-from ...physics.kernels.portable.wasm import make_wasm, wasm_sources
+from ...physics.kernels.portable.wasm import has_linker, make_wasm, wasm_sources
 from ...physics.kernels.sealed import unseal, write_sealed
 from .entries import ENTRIES
 
@@ -28,6 +28,11 @@ def game_module() -> bytes:
     except (OSError, ValueError):
         return make_wasm(ENTRIES)
     return content[len(sources) :] if content.startswith(sources) else make_wasm(ENTRIES)
+
+
+def offers_module() -> bool:
+    """Return whether the module came with the package, or can be made; so pages can be offered."""
+    return FILE.exists() or has_linker()
 
 
 def ship_module() -> None:

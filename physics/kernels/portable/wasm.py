@@ -99,6 +99,15 @@ def _assemble(code: str, entries: Sequence[Entry]) -> bytes:
     return bytes(machine.emit_object(module))
 
 
+def has_linker() -> bool:
+    """Return whether a module can be made here."""
+    try:
+        _find_linker()
+    except ImportError:
+        return False
+    return True
+
+
 def _find_linker() -> list[str]:
     """Return the command of LLVM's linker for WebAssembly."""
     if find_spec("ziglang") is not None:

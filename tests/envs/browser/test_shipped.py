@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from arkanoid.envs.browser import shipped
+from arkanoid.physics.kernels.portable import wasm
 
 
 @pytest.fixture
@@ -44,3 +45,23 @@ def test_a_damaged_one_is_not_used(
 def test_the_digest_says_of_which_sources() -> None:
     assert len(shipped.wasm_sources(shipped.ENTRIES)) == 16
     assert shipped.wasm_sources(shipped.ENTRIES[:1]) != shipped.wasm_sources(shipped.ENTRIES)
+
+
+def test_pages_are_offered_where_the_module_is_or_can_be_made(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After `make train`, the printed command ended with a missing linker."""
+    monkeypatch.setattr(shipped, "has_linker", lambda: False)
+    assert not shipped.offers_module()
+    shipped.ship_module()
+    assert shipped.offers_module()
+    file.unlink()
+    monkeypatch.setattr(shipped, "has_linker", lambda: True)
+    assert shipped.offers_module()
+
+
+def test_a_linker_that_is_missing_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert wasm.has_linker()
+    monkeypatch.setattr(wasm, "find_spec", lambda name: None)
+    monkeypatch.setattr(wasm.shutil, "which", lambda name: None)
+    assert not wasm.has_linker()
