@@ -14,7 +14,7 @@ from typing import Any, TypeVar, cast
 import numba
 
 from .cache import writable_folder
-from .callees import CalleeCompiler, CalleeDispatcher, RootDispatcher
+from .callees import CalleeCompiler, CalleeDispatcher, RootCompiler, RootDispatcher
 from .numba_internals import (
     WITH_RUNTIME,
     WITHOUT_C_ENTRY,
@@ -83,14 +83,16 @@ def _compile(function: F, **options: bool) -> F:
     """Return a function's dispatcher with its cache; the function itself if interpreted."""
     if is_interpreted():
         return function
-    compiled: Any = _njit(function, **_ALWAYS, **WITHOUT_C_ENTRY, **options)
+    # What is compiled for other machines shares what it calls with others.
+    compiler: dict[str, Any] = {} if UNCACHED in os.environ else {"pipeline_class": RootCompiler}
+    compiled: Any = _njit(function, **_ALWAYS, **WITHOUT_C_ENTRY, **options, **compiler)
     compiled.__class__ = RootDispatcher
     compiled.make_callee = partial(_callee, function, options)
     hold_signals(compiled)
     # The options are a part of the key: Numba's own does not hold them.
-    compiler = f"{compiler_state()} {sorted(options.items())}"
+    state = f"{compiler_state()} {sorted(options.items())}"
     file = Path(function.__code__.co_filename)
-    folder = None if UNCACHED in os.environ else writable_folder(file, compiler)
+    folder = None if UNCACHED in os.environ else writable_folder(file, state)
     if folder is not None:
         cache_in(folder, compiled)
     return cast(F, compiled)
