@@ -23,6 +23,8 @@ from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import NativeLowering
 
+OWN = ".own"  # ends the name of a function that belongs to one kernel
+
 
 class _CalleeLibrary(JITCodeLibrary):  # type: ignore[misc]
     """A function that waits for its callers: it is not optimised, and has no machine code."""
@@ -46,6 +48,9 @@ class _RootLibrary(JITCodeLibrary):  # type: ignore[misc]
         for each in self._final_module.functions:
             if not each.is_declaration and each.linkage == Linkage.linkonce_odr:
                 each.linkage = Linkage.internal
+                # LLVM may now change how it is called. Its loader does not tell internal functions
+                # from others: under the old name, others would call it in the old way.
+                each.name += OWN
         super()._optimize_final_module()
 
 

@@ -4,12 +4,13 @@ If a new release of Numba lacks or changes a part, its test fails and says what 
 """
 
 import inspect
+import runpy
 from pathlib import Path
 from typing import Any
 
 import numba
 import pytest
-from arkanoid.physics.kernels import kernel
+from arkanoid.physics.kernels import inner, kernel
 from arkanoid.physics.kernels.numba_internals import is_interpreted
 from numba.core import codegen, compiler, typed_passes
 from numba.core.compiler_machinery import PassManager
@@ -107,3 +108,35 @@ def test_what_a_kernel_calls_is_its_own() -> None:
     code = caller.inspect_llvm(signature)  # type: ignore[attr-defined]
     assert "linkonce_odr" not in code
     assert not any("doubled" in line for line in code.splitlines() if line.startswith("define"))
+
+
+def test_others_do_not_call_what_belongs_to_a_kernel(tmp_path: Path) -> None:
+    """Numba's own functions called a kernel's in the way of before LLVM changed it: a crash."""
+    branches = "".join(
+        f"    if kind == {i}:\n"
+        f"        s += x * {i}.5 / (y + {i})\n"
+        f"        if s > y:\n"
+        f"            s = s / (x + {i})\n"
+        for i in range(300)  # enough that LLVM leaves it apart from two callers
+    )
+    file = tmp_path / "large.py"
+    file.write_text(f"def large(kind, unused, x, y):\n    s = 0.0\n{branches}    return s\n")
+    plain = runpy.run_path(str(file))["large"]
+    large = inner(plain)
+
+    @kernel
+    def owner(a: Any, b: Any) -> Any:
+        return large(int(b), a, a, b) + large(int(a) + 2, b, b, a) + large(int(a), 1.0, a, b)
+
+    @numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
+    def other(a: Any, b: Any) -> Any:
+        total = 0.0
+        for i in range(10):
+            total += large(i, a, b, a) + large(i + 1, b, a, b) + large(i * 2, b, a, b)
+        return total
+
+    assert owner(2.0, 5.0) == plain(5, 2.0, 2.0, 5.0) + plain(4, 5.0, 5.0, 2.0) + plain(2, 1, 2, 5)
+    expected = 0.0
+    for i in range(10):
+        expected += plain(i, 2.0, 5.0, 2.0) + plain(i + 1, 5.0, 2.0, 5.0) + plain(2 * i, 5, 2, 5)
+    assert other(2.0, 5.0) == expected
