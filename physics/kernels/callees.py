@@ -24,6 +24,7 @@ from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import NativeLowering
 
 OWN = ".own"  # ends the name of a function that belongs to one kernel
+REFERENCE_COUNTING = "NRT_"  # begins the names of Numba's functions for it
 
 
 class _CalleeLibrary(JITCodeLibrary):  # type: ignore[misc]
@@ -46,6 +47,9 @@ class _RootLibrary(JITCodeLibrary):  # type: ignore[misc]
 
     def _optimize_final_module(self) -> None:
         for each in self._final_module.functions:
+            # Numba finds what counts references by its name, and leaves out most of its calls.
+            if each.name.startswith(REFERENCE_COUNTING):
+                continue
             if not each.is_declaration and each.linkage == Linkage.linkonce_odr:
                 each.linkage = Linkage.internal
                 # LLVM may now change how it is called. Its loader does not tell internal functions
