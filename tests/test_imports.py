@@ -63,6 +63,22 @@ ORDER = {
         adapter interrupts output
     """,
 }
+# The same for rooms in a room.
+ORDER_WITHIN = {
+    "physics/world": """
+        batch
+        world
+        questions
+        memory
+        queries editing
+        stepping
+        groups
+        plans
+        meetings
+        lookup
+        state
+    """,
+}
 FILES = [file for package in ORDER for file in sorted((ROOT / package).rglob("*.py"))]
 HEAVY = {
     *("torch", "stable_baselines3", "tensorboard", "optuna", "pygame", "matplotlib", "PIL"),
@@ -114,26 +130,52 @@ def room(file: Path) -> tuple[str, str]:
     return package, rest[0] if rest and rest[0] != "__init__" else ""
 
 
+def room_within(file: Path, folder: Path) -> str:
+    """Return the room of a file in a folder; that of the folder's `__init__.py` is ""."""
+    name = file.relative_to(folder).with_suffix("").parts[0]
+    return "" if name == "__init__" else name
+
+
+def rooms_below(own: str, order: str) -> set[str]:
+    """Return the rooms from which one may import; all of them for an `__init__.py`."""
+    lines = [line.split() for line in order.splitlines()]
+    place = next((place for place, line in enumerate(lines) if own in line), 0)
+    return {own, *(name for line in lines[place:] for name in line)}
+
+
 def test_every_room_has_its_place_in_the_order() -> None:
     assert {file.parent.name for file in ROOT.glob("*/__init__.py")} == set(ORDER)
-    rooms = {room(file) for file in FILES}
-    ordered = {(package, name) for package, lines in ORDER.items() for name in lines.split()}
-    assert rooms - {(package, "") for package in ORDER} == ordered
+    for name, order in (ORDER | ORDER_WITHIN).items():
+        folder = ROOT / name
+        rooms = {room_within(file, folder) for file in folder.rglob("*.py")}
+        assert rooms - {""} == set(order.split())
 
 
 def test_imports_go_one_way() -> None:
     wrong = []
     for file in FILES:
         package, own = room(file)
-        lines = [line.split() for line in ORDER[package].splitlines()]
-        place = next((place for place, line in enumerate(lines) if own in line), 0)
-        allowed = {own, *(name for line in lines[place:] for name in line)}
+        below = rooms_below(own, ORDER[package])
         for _, _, target in our_imports(file):
             other, name = room(target)
-            fits = name in allowed if other == package else other in MAY_IMPORT[package]
+            fits = name in below if other == package else other in MAY_IMPORT[package]
             if not fits:
                 wrong.append(f"{relative(file)} imports {relative(target)}")
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", ORDER_WITHIN)
+def test_imports_within_a_room_go_one_way(name: str) -> None:
+    """They did not: what planned asked what met, and what met asked what planned."""
+    folder = ROOT / name
+    assert [
+        f"{relative(file)} imports {relative(target)}"
+        for file in folder.rglob("*.py")
+        for _, _, target in our_imports(file)
+        if target.is_relative_to(folder)
+        and room_within(target, folder)
+        not in rooms_below(room_within(file, folder), ORDER_WITHIN[name])
+    ] == []
 
 
 def test_only_public_names_of_other_rooms_are_imported() -> None:

@@ -2,8 +2,8 @@
 
 from ...kernels import kernel
 from ...tolerances import MOST_RESTS, NO_APPROACH, SLIDE
-from ..records import CRUSHED, FREE, HELD
-from ..view import WorldView, motions_of, plans_of, progress_of, traits_of
+from ..state.records import CRUSHED, FREE, HELD
+from ..state.view import WorldView, motions_of, plans_of, progress_of, traits_of
 
 
 @kernel
