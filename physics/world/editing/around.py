@@ -9,7 +9,8 @@ from ..lookup.grid import find_in_grid
 from ..lookup.links import leave_lists
 from ..lookup.neighbours import interacts
 from ..lookup.tree import NO_ONE, remove_leaf
-from ..plans.prediction import forget_partner
+from ..plans.prediction import plan_all
+from ..plans.suitors import forget_partner
 from ..plans.tournament import replay
 from ..state.records import (
     FRESH,
@@ -33,7 +34,6 @@ from ..state.view import (
     traits_of,
     winners_of,
 )
-from ..stepping.step import plan_all
 
 
 @kernel

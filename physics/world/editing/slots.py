@@ -10,7 +10,7 @@ from ...kernels import kernel
 from ..lookup.grid import enter_grid, leave_grid
 from ..lookup.neighbours import TOO_MANY
 from ..lookup.tree import NO_ONE
-from ..plans.prediction import forget_partner, join_suitors
+from ..plans.suitors import forget_partner, join_suitors
 from ..plans.tournament import drop_out, replay, take_part
 from ..state.records import (
     FEW_MOVING,

@@ -2,7 +2,7 @@
 
 from ...kernels import kernel
 from ..lookup.neighbours import find_near, sort_items
-from ..meetings.passing import inverse_mass_of
+from ..meetings.stages import inverse_mass_of
 from ..plans.tournament import is_far_ahead, next_due
 from ..state.clock_time import elapsed, later
 from ..state.courses import margins_of, motion_at

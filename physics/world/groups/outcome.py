@@ -3,10 +3,13 @@
 from ...kernels import kernel
 from ...tolerances import NO_APPROACH, NO_TURN, RESOLVED, ROUGHLY, STEPS_PER_TOUCH
 from ..meetings.bounces import turn_velocity
-from ..meetings.events import contact_point, leave_sensors, write_event
+from ..meetings.events import contact_point, write_event
 from ..meetings.passing import slowest_hit
-from ..plans.changes import count_hit, count_rest, predict_stale, reach_stage, shrink_box
-from ..plans.prediction import find_stale, predict
+from ..meetings.sensors import leave_sensors
+from ..meetings.stages import count_hit, count_rest, reach_stage
+from ..plans.changes import predict_stale, shrink_box
+from ..plans.prediction import predict
+from ..plans.suitors import find_stale
 from ..state.courses import is_short_way, move_to
 from ..state.records import CRUSHED, HELD, HIT, Hits
 from ..state.view import (

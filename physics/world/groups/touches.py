@@ -9,7 +9,8 @@ from ..lookup.ground import move_as_one
 from ..lookup.tree import NO_ONE
 from ..meetings.bounces import restitution_of
 from ..meetings.impact import impact_of, may_meet
-from ..meetings.passing import inverse_mass_of, passes_by, slowest_hit
+from ..meetings.passing import passes_by, slowest_hit
+from ..meetings.stages import inverse_mass_of
 from ..meetings.ties import is_straighter
 from ..state.courses import margins_of, motion_at, velocity_of
 from ..state.view import (

@@ -17,7 +17,7 @@ from ..state.view import (
     progress_of,
     traits_of,
 )
-from .passing import has_reached, inverse_mass_of
+from .stages import has_reached, inverse_mass_of
 
 
 @kernel

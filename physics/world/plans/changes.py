@@ -1,66 +1,10 @@
 """New plans for bodies that have met, and for those that had planned to meet them."""
 
 from ...kernels import kernel
-from ...tolerances import HITS_FOR_NOTHING, MOST_AT_ONCE, MOST_RESTS
 from ..lookup.boxes import fit_here, margin_after_hit
-from ..state.records import FREE, HELD, INERT
-from ..state.view import (
-    WorldView,
-    clock_of,
-    header_of,
-    motions_of,
-    plans_of,
-    progress_of,
-    stale_of,
-    traits_of,
-)
-from .prediction import find_stale, predict
-
-
-@kernel
-def count_hit(world: WorldView, slot: int, is_short: bool) -> None:
-    """Count a hit of a body; after `max_hits` it is inert, after as many again it is held.
-
-    Some hits count for several: those that go nowhere, those of a body that bounces no more, and
-    those that the world can no longer afford, since it has had `max_hits` in this step.
-
-    Args:
-        world, slot: the body.
-        is_short: nobody has gone far to this hit, see `is_short_way`.
-    """
-    plan, progress, max_hits = plans_of(world)[slot], progress_of(world), header_of(world).max_hits
-    plan.instant += 1
-    if plan.instant >= MOST_AT_ONCE:
-        progress.inert = 1
-    progress.hits += 1
-    is_one = plan.stage == FREE and not is_short and progress.hits <= max_hits
-    # With a low limit, it does not end the next stages at once.
-    plan.hits += 1 if is_one else min(HITS_FOR_NOTHING, 1 + max_hits // 100)
-    if plan.hits >= max_hits and plan.stage < HELD:
-        reach_stage(world, slot, INERT if plan.stage == FREE else HELD)
-
-
-@kernel
-def count_rest(world: WorldView, slot: int) -> None:
-    """Count that a body came to rest on something; after some times it slides, see `is_sliding`."""
-    plan = plans_of(world)[slot]
-    plan.rests += 1
-    if plan.rests >= MOST_RESTS:
-        progress_of(world).inert = 1
-
-
-@kernel
-def reach_stage(world: WorldView, slot: int, stage: int) -> None:
-    """Let a body reach a later stage of this step."""
-    plan = plans_of(world)[slot]
-    if plan.stage == FREE:
-        clock_of(world).capped += 1
-        progress_of(world).inert = 1
-    plan.stage = stage
-    plan.hits = 0
-    if stage == HELD:
-        motions_of(world)[slot].vx = 0.0
-        motions_of(world)[slot].vy = 0.0
+from ..state.view import WorldView, plans_of, stale_of, traits_of
+from .prediction import predict
+from .suitors import find_stale
 
 
 @kernel

@@ -9,19 +9,21 @@ import math
 from ...kernels import kernel
 from ...pairs.touching import margin_along
 from ...tolerances import FLATTEST, MOST_RESTS, TOUCH
-from ..lookup.boxes import time_to_leave
-from ..lookup.inside import find_inside
+from ..lookup.boxes import fit_all, time_to_leave
 from ..lookup.neighbours import find_near, has_list
 from ..lookup.tree import NO_ONE
 from ..meetings.contacts import solid_contact
 from ..meetings.impact import impact_of, may_meet
-from ..meetings.passing import has_reached, passes_by
+from ..meetings.passing import passes_by
+from ..meetings.sensors import is_inside
+from ..meetings.stages import has_reached
 from ..meetings.ties import is_straighter
 from ..state.clock_time import elapsed, is_earlier, later
 from ..state.courses import margins_of, motion_at, place_at, short_way
 from ..state.records import HELD, INDEX_BITS, LEAVE, LOOK, MEET, NOTHING, TraitRecord
 from ..state.view import (
     WorldView,
+    clock_of,
     list_of,
     motions_of,
     moving_of,
@@ -29,11 +31,11 @@ from ..state.view import (
     plans_of,
     progress_of,
     shapes_of,
-    stale_of,
     traits_of,
     winners_of,
 )
-from .tournament import replay
+from .suitors import forget_partner, join_suitors
+from .tournament import replay, start_tournament
 
 # This is added to the number of a pair that does not bounce.
 WITH_SENSOR = 1 << 62
@@ -43,16 +45,6 @@ SPARE = 1e-9
 # A body that reaches a static one at the flattest angle may slide this fraction of the coordinates
 # until rounding no longer hides whether they touch, see `_meeting`.
 FLAT_WAY = 2.0 * TOUCH / FLATTEST
-
-
-@kernel
-def is_inside(world: WorldView, one: TraitRecord, a: int, other: TraitRecord, b: int) -> bool:
-    """Return whether one of two bodies (with their traits) is a sensor and contains the other."""
-    if one.sensor >= 0:
-        return find_inside(world, a, b) != NO_ONE
-    if other.sensor >= 0:
-        return find_inside(world, b, a) != NO_ONE
-    return False
 
 
 @kernel
@@ -90,39 +82,6 @@ def _pair_of(world: WorldView, a: int, b: int) -> int:
     traits = traits_of(world)
     pair = (min(a, b) << INDEX_BITS) | max(a, b)
     return pair if traits[a].sensor < 0 and traits[b].sensor < 0 else pair + WITH_SENSOR
-
-
-@kernel
-def join_suitors(world: WorldView, slot: int) -> None:
-    """Put a body into the list of those that plan to meet its partner, if the partner moves."""
-    plans = plans_of(world)
-    plan = plans[slot]
-    theirs = traits_of(world)[plan.partner].slot
-    if theirs < 0:
-        return
-    partner = plans[theirs]
-    plan.previous_suitor = NO_ONE
-    plan.next_suitor = partner.suitor
-    if partner.suitor != NO_ONE:
-        plans[partner.suitor].previous_suitor = slot
-    partner.suitor = slot
-
-
-@kernel
-def forget_partner(world: WorldView, slot: int) -> None:
-    """Let a body plan nothing, and take it out of the list in which it is."""
-    plans = plans_of(world)
-    plan = plans[slot]
-    if plan.kind == MEET:
-        theirs = traits_of(world)[plan.partner].slot
-        if theirs >= 0:
-            if plan.next_suitor != NO_ONE:
-                plans[plan.next_suitor].previous_suitor = plan.previous_suitor
-            if plan.previous_suitor != NO_ONE:
-                plans[plan.previous_suitor].next_suitor = plan.next_suitor
-            else:
-                plans[theirs].suitor = plan.next_suitor
-    plan.kind = NOTHING
 
 
 @kernel
@@ -381,12 +340,17 @@ def _plan_alone(
 
 
 @kernel
-def find_stale(world: WorldView, slot: int, count: int) -> int:
-    """Append the bodies to ``stale`` that plan to meet one whose course has changed."""
-    plans, stale = plans_of(world), stale_of(world)
-    suitor = plans[slot].suitor
-    while suitor != NO_ONE:
-        stale[count] = suitor
-        count += 1
-        suitor = plans[suitor].next_suitor
-    return count
+def plan_all(world: WorldView) -> None:
+    """Make all boxes and all plans."""
+    clock = clock_of(world)
+    plans = plans_of(world)
+    for slot in range(plans.shape[0]):
+        plan = plans[slot]
+        plan.time = math.inf
+        plan.time_low = 0.0
+        plan.kind = NOTHING
+        plan.suitor = NO_ONE
+    fit_all(world, clock.time, clock.time_low)
+    start_tournament(winners_of(world), plans)
+    for slot in range(plans.shape[0]):
+        predict(world, slot, clock.time, clock.time_low, True)

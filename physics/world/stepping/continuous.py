@@ -5,10 +5,13 @@ from ..groups.gathering import meets_alone
 from ..groups.outcome import meet_together
 from ..lookup.boxes import fit_here, next_margin
 from ..meetings.bounces import bounce_pair
-from ..meetings.events import contact_point, enter_sensor, has_room, leave_sensors, write_event
-from ..meetings.passing import inverse_mass_of, slowest_hit
-from ..plans.changes import count_hit, plan_after_hit, predict_stale
-from ..plans.prediction import find_stale, is_inside, predict
+from ..meetings.events import contact_point, has_room, write_event
+from ..meetings.passing import slowest_hit
+from ..meetings.sensors import enter_sensor, is_inside, leave_sensors
+from ..meetings.stages import count_hit, inverse_mass_of
+from ..plans.changes import plan_after_hit, predict_stale
+from ..plans.prediction import predict
+from ..plans.suitors import find_stale
 from ..state.clock_time import is_earlier
 from ..state.courses import is_short_way, move_to, velocity_of
 from ..state.records import HIT, LOOK, MEET, Hits

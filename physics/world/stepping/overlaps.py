@@ -14,8 +14,8 @@ from ..lookup.boxes import first_margin, fit, follow
 from ..lookup.neighbours import find_near, sort_items
 from ..meetings.bounces import bounce_pair
 from ..meetings.contacts import contact_at, contact_within, solid_contact
-from ..meetings.events import enter_sensor, has_room, write_event
-from ..plans.prediction import is_inside
+from ..meetings.events import has_room, write_event
+from ..meetings.sensors import enter_sensor, is_inside
 from ..state.courses import motion_at, move_to
 from ..state.records import HIT, Hits
 from ..state.view import (

@@ -12,11 +12,11 @@ from ...kernels.borrowed import BYTE, INDEX
 from ...kernels.portable.addresses import array_at
 from ...tolerances import FARTHEST, MOST_RESTS
 from ..lookup.boxes import first_margin, fit_all, fit_here
-from ..lookup.tree import NO_ONE
-from ..meetings.events import has_room, leave_all_sensors, leave_placed
+from ..meetings.events import has_room
+from ..meetings.sensors import leave_all_sensors, leave_placed
 from ..plans.grounds import find_on_grounds, is_kinematic, plan_beside
-from ..plans.prediction import find_stale, predict
-from ..plans.tournament import start_tournament
+from ..plans.prediction import plan_all, predict
+from ..plans.suitors import find_stale
 from ..state.clock_time import later
 from ..state.courses import move_to, place_at
 from ..state.records import (
@@ -24,7 +24,6 @@ from ..state.records import (
     FREE,
     FRESH,
     GROUND_GONE,
-    NOTHING,
     OLD,
     PLANNED,
     UNPLANNED,
@@ -46,7 +45,6 @@ from ..state.view import (
     shown_after_step_of,
     shown_of,
     stale_of,
-    winners_of,
 )
 from .continuous import run_events
 from .overlaps import put_in_order, relax_overlaps, resolve_overlaps
@@ -262,23 +260,6 @@ def _plan(world: WorldView, anew: bool) -> None:
         plan_all(world)
     else:
         _plan_fresh(world)
-
-
-@kernel
-def plan_all(world: WorldView) -> None:
-    """Make all boxes and all plans."""
-    clock = clock_of(world)
-    plans = plans_of(world)
-    for slot in range(plans.shape[0]):
-        plan = plans[slot]
-        plan.time = math.inf
-        plan.time_low = 0.0
-        plan.kind = NOTHING
-        plan.suitor = NO_ONE
-    fit_all(world, clock.time, clock.time_low)
-    start_tournament(winners_of(world), plans)
-    for slot in range(plans.shape[0]):
-        predict(world, slot, clock.time, clock.time_low, True)
 
 
 @kernel
