@@ -5,6 +5,7 @@ type checkers only.
 """
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -84,6 +85,7 @@ HEAVY = {
     *("torch", "stable_baselines3", "tensorboard", "optuna", "pygame", "matplotlib", "PIL"),
     *("pydantic", "jinja2", "markdown_it", "tomli_w", "minari", "h5py", "mlflow", "wandb"),
 }
+MAP = ROOT / "docs" / "architecture.md"
 MOST_LINES = 400  # of a file
 MOST_FILES = 16  # of code in a folder, not counting `__init__.py`
 Module = tuple[str, ...]  # a dotted path from the top, such as ("arkanoid", "envs", "rules")
@@ -162,6 +164,28 @@ def test_imports_go_one_way() -> None:
             if not fits:
                 wrong.append(f"{relative(file)} imports {relative(target)}")
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", ["physics", "physics/world", "envs", "agents"])
+def test_the_map_has_what_imports_above_what_is_imported(name: str) -> None:
+    """It had not: worlds draw themselves, but stood below the row that draws."""
+    _, _, section = MAP.read_text(encoding="utf-8").partition(f"\n### {name}\n")
+    rows = [line.split("|")[1] for line in section.partition("\n#")[0].splitlines() if "](" in line]
+    links = [re.findall(r"\(\.\./([\w./]+)\)", row) for row in rows]
+    places = {ROOT / link: place for place, row in enumerate(links) for link in row}
+
+    def place(file: Path) -> int | None:
+        """Return the row of a file; None if it has none: the one at the bottom names no files."""
+        return next((places[path] for path in (file, *file.parents) if path in places), None)
+
+    assert len(places) > 5
+    assert [
+        f"{relative(file)} imports {relative(target)}"
+        for file in FILES
+        if (own := place(file)) is not None
+        for _, _, target in our_imports(file)
+        if (other := place(target)) is not None and other < own
+    ] == []
 
 
 @pytest.mark.parametrize("name", ORDER_WITHIN)
