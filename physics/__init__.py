@@ -34,8 +34,8 @@ if TYPE_CHECKING:
         Rectangle,
     )
     from .world.batch import WorldBatch
-    from .world.lookup.answers import RayHit, RayHits
-    from .world.records import BEGIN, END, HIT, Hit
+    from .world.queries.answers import RayHit, RayHits
+    from .world.state.records import BEGIN, END, HIT, Hit
     from .world.world import World
 
 __all__ = [
@@ -80,8 +80,8 @@ _NAMES = {
     "shapes.colliders": "AxisAlignedHalfPlane AxisAlignedRectangle Collider Convex HalfPlane "
     "Particle Rectangle",
     "world.batch": "WorldBatch",
-    "world.records": "BEGIN END HIT Hit",
-    "world.lookup.answers": "RayHit RayHits",
+    "world.state.records": "BEGIN END HIT Hit",
+    "world.queries.answers": "RayHit RayHits",
     "world.world": "World",
 }
 _MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}

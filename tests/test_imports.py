@@ -5,6 +5,7 @@ type checkers only.
 """
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -63,11 +64,28 @@ ORDER = {
         adapter interrupts output
     """,
 }
+# The same for rooms in a room.
+ORDER_WITHIN = {
+    "physics/world": """
+        batch
+        world
+        questions
+        memory
+        queries editing
+        stepping
+        groups
+        plans
+        meetings
+        lookup
+        state
+    """,
+}
 FILES = [file for package in ORDER for file in sorted((ROOT / package).rglob("*.py"))]
 HEAVY = {
     *("torch", "stable_baselines3", "tensorboard", "optuna", "pygame", "matplotlib", "PIL"),
     *("pydantic", "jinja2", "markdown_it", "tomli_w", "minari", "h5py", "mlflow", "wandb"),
 }
+MAP = ROOT / "docs" / "architecture.md"
 MOST_LINES = 400  # of a file
 MOST_FILES = 16  # of code in a folder, not counting `__init__.py`
 Module = tuple[str, ...]  # a dotted path from the top, such as ("arkanoid", "envs", "rules")
@@ -114,26 +132,74 @@ def room(file: Path) -> tuple[str, str]:
     return package, rest[0] if rest and rest[0] != "__init__" else ""
 
 
+def room_within(file: Path, folder: Path) -> str:
+    """Return the room of a file in a folder; that of the folder's `__init__.py` is ""."""
+    name = file.relative_to(folder).with_suffix("").parts[0]
+    return "" if name == "__init__" else name
+
+
+def rooms_below(own: str, order: str) -> set[str]:
+    """Return the rooms from which one may import; all of them for an `__init__.py`."""
+    lines = [line.split() for line in order.splitlines()]
+    place = next((place for place, line in enumerate(lines) if own in line), 0)
+    return {own, *(name for line in lines[place:] for name in line)}
+
+
 def test_every_room_has_its_place_in_the_order() -> None:
     assert {file.parent.name for file in ROOT.glob("*/__init__.py")} == set(ORDER)
-    rooms = {room(file) for file in FILES}
-    ordered = {(package, name) for package, lines in ORDER.items() for name in lines.split()}
-    assert rooms - {(package, "") for package in ORDER} == ordered
+    for name, order in (ORDER | ORDER_WITHIN).items():
+        folder = ROOT / name
+        rooms = {room_within(file, folder) for file in folder.rglob("*.py")}
+        assert rooms - {""} == set(order.split())
 
 
 def test_imports_go_one_way() -> None:
     wrong = []
     for file in FILES:
         package, own = room(file)
-        lines = [line.split() for line in ORDER[package].splitlines()]
-        place = next((place for place, line in enumerate(lines) if own in line), 0)
-        allowed = {own, *(name for line in lines[place:] for name in line)}
+        below = rooms_below(own, ORDER[package])
         for _, _, target in our_imports(file):
             other, name = room(target)
-            fits = name in allowed if other == package else other in MAY_IMPORT[package]
+            fits = name in below if other == package else other in MAY_IMPORT[package]
             if not fits:
                 wrong.append(f"{relative(file)} imports {relative(target)}")
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", ["physics", "physics/world", "envs", "agents"])
+def test_the_map_has_what_imports_above_what_is_imported(name: str) -> None:
+    """It had not: worlds draw themselves, but stood below the row that draws."""
+    _, _, section = MAP.read_text(encoding="utf-8").partition(f"\n### {name}\n")
+    rows = [line.split("|")[1] for line in section.partition("\n#")[0].splitlines() if "](" in line]
+    links = [re.findall(r"\(\.\./([\w./]+)\)", row) for row in rows]
+    places = {ROOT / link: place for place, row in enumerate(links) for link in row}
+
+    def place(file: Path) -> int | None:
+        """Return the row of a file; None if it has none: the one at the bottom names no files."""
+        return next((places[path] for path in (file, *file.parents) if path in places), None)
+
+    assert len(places) > 5
+    assert [
+        f"{relative(file)} imports {relative(target)}"
+        for file in FILES
+        if (own := place(file)) is not None
+        for _, _, target in our_imports(file)
+        if (other := place(target)) is not None and other < own
+    ] == []
+
+
+@pytest.mark.parametrize("name", ORDER_WITHIN)
+def test_imports_within_a_room_go_one_way(name: str) -> None:
+    """They did not: what planned asked what met, and what met asked what planned."""
+    folder = ROOT / name
+    assert [
+        f"{relative(file)} imports {relative(target)}"
+        for file in folder.rglob("*.py")
+        for _, _, target in our_imports(file)
+        if target.is_relative_to(folder)
+        and room_within(target, folder)
+        not in rooms_below(room_within(file, folder), ORDER_WITHIN[name])
+    ] == []
 
 
 def test_only_public_names_of_other_rooms_are_imported() -> None:

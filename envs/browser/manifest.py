@@ -8,7 +8,7 @@ import numpy as np
 
 from ...physics.kernels.portable.wasm import FREE_FROM
 from ...physics.scenes.records import Meeting, Sandbox, Seen
-from ...physics.world.records import Hit, Ray
+from ...physics.world.state.records import Hit, Ray
 from ...version import __version__
 from .. import rules, state
 from ..actions import COMMANDS, action_meanings

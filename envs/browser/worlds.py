@@ -7,8 +7,8 @@ from ...physics.scenes import sandbox
 from ...physics.scenes.patterns import POLYGONS
 from ...physics.scenes.ready import SCENES, Thing, text_of
 from ...physics.scenes.records import MAX_EDGES, RAYS, Seen
-from ...physics.world.records import BEGIN, END, HIT, Hit, Inside, Pair, Ray
-from ...physics.world.setup import Room, Setup
+from ...physics.world.memory.setup import Room, Setup
+from ...physics.world.state.records import BEGIN, END, HIT, Hit, Inside, Pair, Ray
 
 ROOM = 1024  # bodies
 MAX_HITS = 10_000  # of one body in one step, as `World` has it

@@ -84,7 +84,7 @@ Seen = record_dtype(
 # A world to throw things in, with the blocks of `World`; and what a call asks and answers.
 Sandbox = record_dtype(
     [
-        ("workspace", np.int64),  # the blocks, uint8: see `world.records`
+        ("workspace", np.int64),  # the blocks, uint8: see `world.state.records`
         ("workspace_size", np.int64),
         ("state", np.int64),
         ("state_size", np.int64),

@@ -12,21 +12,20 @@ from ..kernels import accessor, kernel
 from ..kernels.borrowed import BYTE, INDEX
 from ..kernels.portable import array_at
 from ..shapes.records import Edge, Shape
-from ..world.living.edits import (
+from ..world.editing.edits import (
     add_body,
     change_body,
     change_restitution,
     place_body,
     remove_body,
 )
-from ..world.living.slots import place_of
+from ..world.editing.slots import place_of
 from ..world.lookup.boxes import enter_all_static
 from ..world.lookup.inside import has_free_pair
 from ..world.lookup.tree import NO_ONE
-from ..world.queries import EDGE_SIZE, RAY_SIZE, SHAPE_SIZE, find_first, find_overlapping
-from ..world.records import INDEX_MASK, NEW, ON, UNUSED, Hit, Ray
-from ..world.stepping import CALL_BLOCKS, CALL_START, INVALID, step_worlds
-from ..world.view import (
+from ..world.queries.finding import EDGE_SIZE, RAY_SIZE, SHAPE_SIZE, find_first, find_overlapping
+from ..world.state.records import INDEX_MASK, NEW, ON, UNUSED, Hit, Ray
+from ..world.state.view import (
     INSIDE_SIZE,
     WorldView,
     clock_of,
@@ -41,6 +40,7 @@ from ..world.view import (
     shown_of,
     traits_of,
 )
+from ..world.stepping.step import CALL_BLOCKS, CALL_START, INVALID, step_worlds
 from .patterns import TURNS
 from .placing import outline_figure, place_figure
 from .records import MAX_EDGES, RAYS, Seen

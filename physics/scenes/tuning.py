@@ -6,8 +6,8 @@ from typing import Any
 from ..kernels import kernel
 from ..world.lookup.boxes import typical_margin, typical_width
 from ..world.lookup.grid import SPARE
-from ..world.records import FEW_MOVING, NEW, UNUSED
-from ..world.view import (
+from ..world.state.records import FEW_MOVING, NEW, UNUSED
+from ..world.state.view import (
     WorldView,
     clock_of,
     entries_of,

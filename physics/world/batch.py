@@ -10,9 +10,9 @@ from ..arguments import integer, whole
 from ..body import FloatArray
 from ..kernels.one_thread import OneThread
 from ..kernels.threads import Threads
-from .living.snapshots import pack, unpack
-from .records import Clock
-from .states import Stepper, checked_step
+from .memory.snapshots import pack, unpack
+from .memory.stepper import Stepper, checked_step
+from .state.records import Clock
 from .world import World
 
 

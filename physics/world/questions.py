@@ -13,10 +13,10 @@ from ..drawing import draw_scene
 from ..errors import NoBodyError
 from ..kernels.one_thread import OneThread, alone
 from ..shapes.colliders import AxisAlignedRectangle, Collider, Particle
-from .living.site import Site
-from .lookup.answers import RayHit, RayHits, answer_of, answers_of, new_ray, new_rays
-from .queries import find_first, find_overlapping
-from .records import INDEX_MASK, UNUSED
+from .memory.site import Site
+from .queries.answers import RayHit, RayHits, answer_of, answers_of, new_ray, new_rays
+from .queries.finding import find_first, find_overlapping
+from .state.records import INDEX_MASK, UNUSED
 
 IndexArray = npt.NDArray[np.int64]
 

@@ -15,12 +15,12 @@ from ..errors import HitLimitWarning
 from ..kernels.one_thread import OneThread, alone
 from ..protocols import Collidable
 from ..shapes.colliders import Collider
-from .living.site import NO_HITS, Family, Site, copied
-from .living.snapshots import pack, unpack
+from .memory.setup import Room, Setup
+from .memory.site import NO_HITS, Family, Site, copied
+from .memory.snapshots import pack, unpack
+from .memory.stepper import Stepper, checked_step
 from .questions import ALL, Handles, IndexArray, Questions, bits
-from .records import ON
-from .setup import Room, Setup
-from .states import Stepper, checked_step
+from .state.records import ON
 
 INF = math.inf
 FIRST_ROOM = Room(bodies=8, movers=8, shapes=4, edges=16)  # of a world

@@ -1,1 +1,1 @@
-"""What finds things fast: a tree of boxes, who is inside which sensor, restitutions of pairs."""
+"""What finds things fast: a tree and a grid of boxes, who is inside which sensor, restitutions."""

@@ -16,9 +16,9 @@ import numpy.typing as npt
 from ...kernels import kernel
 from ...shapes.records import ShapeRecord
 from ...tolerances import TOUCH
-from ..courses import place_at
-from ..records import FEW_MOVING, ON, PLANNED, Block, PlanRecord
-from ..view import (
+from ..state.courses import place_at
+from ..state.records import FEW_MOVING, ON, PLANNED, Block, PlanRecord
+from ..state.view import (
     WorldView,
     clock_of,
     entries_of,

@@ -10,8 +10,8 @@ Detection of Deformable Objects, VMV 2003; Ericson, *Real-Time Collision Detecti
 import math
 
 from ...kernels import kernel
-from ..records import BoxRecord, Indices
-from ..view import (
+from ..state.records import BoxRecord, Indices
+from ..state.view import (
     LEVELS,
     WorldView,
     boxes_of,

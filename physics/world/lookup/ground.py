@@ -3,9 +3,9 @@
 from ...kernels import kernel
 from ...pairs.seams import covers
 from ...shapes.records import Edges, Shapes
-from ..courses import place_at, shown_place, velocity_of
-from ..records import TraitRecord
-from ..view import (
+from ..state.courses import place_at, shown_place, velocity_of
+from ..state.records import TraitRecord
+from ..state.view import (
     WorldView,
     boundless_of,
     boxes_of,

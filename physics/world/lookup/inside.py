@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...kernels import kernel
-from ..records import Block, Inside, Pair
-from ..view import WorldView, first_inside_of, header_of, inside_of, pairs_of
+from ..state.records import Block, Inside, Pair
+from ..state.view import WorldView, first_inside_of, header_of, inside_of, pairs_of
 from .tree import NO_ONE
 
 FEW_PAIRS = 8  # that there is room for at first

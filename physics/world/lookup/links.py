@@ -11,7 +11,7 @@ is looked up each time.
 import math
 
 from ...kernels import kernel
-from ..view import (
+from ..state.view import (
     LINKS,
     WorldView,
     boxes_of,

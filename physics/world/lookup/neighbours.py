@@ -1,8 +1,8 @@
 """The broad phase: the bodies that a moving body may meet before it leaves its box."""
 
 from ...kernels import kernel
-from ..records import Indices, TraitRecord
-from ..view import (
+from ..state.records import Indices, TraitRecord
+from ..state.view import (
     LINKS,
     WorldView,
     boundless_of,

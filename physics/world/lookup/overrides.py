@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...kernels import kernel
-from ..records import Override, Overrides
+from ..state.records import Override, Overrides
 
 EMPTY = -1
 _BITS = (1 << 30) - 1

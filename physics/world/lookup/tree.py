@@ -11,7 +11,7 @@ inner nodes, of which the unused ones are a list.
 """
 
 from ...kernels import kernel
-from ..records import Indices, Nodes, TreeRecord
+from ..state.records import Indices, Nodes, TreeRecord
 
 NO_ONE = -1
 

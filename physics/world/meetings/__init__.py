@@ -1,1 +1,1 @@
-"""What bodies do to each other when they meet: two of them, or many at the same time."""
+"""Two bodies that meet: when and where, whether they bounce, and what is written down of it."""

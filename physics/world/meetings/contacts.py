@@ -3,8 +3,8 @@
 from ...kernels import kernel
 from ...pairs.results import NO_CONTACT
 from ...pairs.table import contact_between
-from ..courses import margins_of, motion_at
-from ..view import WorldView, edges_of, shapes_of, traits_of
+from ..state.courses import margins_of, motion_at
+from ..state.view import WorldView, edges_of, shapes_of, traits_of
 
 
 @kernel

@@ -10,7 +10,7 @@ from ...pairs.results import NO_IMPACT
 from ...pairs.seams import lies_along, next_end
 from ...pairs.table import impact_between, may_touch
 from ..lookup.ground import is_ground
-from ..view import WorldView, edges_of, shapes_of, traits_of
+from ..state.view import WorldView, edges_of, shapes_of, traits_of
 
 
 @kernel

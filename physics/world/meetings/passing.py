@@ -2,31 +2,9 @@
 
 from ...kernels import kernel
 from ...tolerances import MOST_RESTS, NO_APPROACH, SLIDE
-from ..records import CRUSHED, FREE, HELD
-from ..view import WorldView, motions_of, plans_of, progress_of, traits_of
-
-
-@kernel
-def stage_of(world: WorldView, slot: int) -> int:
-    """Return how far a body has used up its hits of this step: FREE for a static one (-1)."""
-    return FREE if slot < 0 else int(plans_of(world)[slot].stage)
-
-
-@kernel
-def inverse_mass_of(world: WorldView, body: int) -> float:
-    """Return a body's inverse mass for hits: 0 also if it is held where it is."""
-    trait = traits_of(world)[body]
-    return 0.0 if stage_of(world, trait.slot) >= HELD else float(trait.inverse_mass)
-
-
-@kernel
-def has_reached(world: WorldView, a: int, b: int, stage: int) -> bool:
-    """Return whether those of two bodies that have a mass have all reached a stage."""
-    traits = traits_of(world)
-    for body in (a, b):
-        if traits[body].inverse_mass > 0.0 and stage_of(world, traits[body].slot) < stage:
-            return False
-    return True
+from ..state.records import CRUSHED
+from ..state.view import WorldView, motions_of, plans_of, progress_of, traits_of
+from .stages import has_reached
 
 
 @kernel

@@ -3,8 +3,8 @@
 from ...kernels import kernel
 from ...pairs.touching_point import shared_stretch
 from ...shapes.records import Edges, ShapeRecord
-from ..courses import motion_at
-from ..view import WorldView, edges_of, shapes_of, traits_of
+from ..state.courses import motion_at
+from ..state.view import WorldView, edges_of, shapes_of, traits_of
 
 
 @kernel

@@ -22,9 +22,9 @@ from arkanoid.physics.scenes.records import MAX_EDGES, RAYS, Figure
 from arkanoid.physics.shapes.boundary import BoundaryEdge
 from arkanoid.physics.shapes.records import Edge, Shape
 from arkanoid.physics.shapes.table import shape_table
-from arkanoid.physics.world.living.site import Family
-from arkanoid.physics.world.records import Ray
-from arkanoid.physics.world.setup import Room, Setup
+from arkanoid.physics.world.memory.setup import Room, Setup
+from arkanoid.physics.world.memory.site import Family
+from arkanoid.physics.world.state.records import Ray
 from helpers.node import run_jobs
 from helpers.repository import ROOT
 

@@ -24,7 +24,7 @@ from arkanoid.physics.scenes.sandbox import (
     step_sandbox,
 )
 from arkanoid.physics.shapes.table import shape_table
-from arkanoid.physics.world.records import Hit, Ray
+from arkanoid.physics.world.state.records import Hit, Ray
 
 DT = 1 / 60
 

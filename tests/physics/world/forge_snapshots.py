@@ -23,8 +23,8 @@ from arkanoid.physics import (
     World,
     WorldBatch,
 )
-from arkanoid.physics.world.living.snapshots import Head, Kept
-from arkanoid.physics.world.records import Clock, Entry, Hit, Override, Trait
+from arkanoid.physics.world.memory.snapshots import Head, Kept
+from arkanoid.physics.world.state.records import Clock, Entry, Hit, Override, Trait
 from helpers.bodies import SMALL_SHAPES, room
 from helpers.forging import forge, opened, sealed_again
 

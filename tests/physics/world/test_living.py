@@ -17,7 +17,7 @@ from arkanoid.physics import (
     World,
     WorldBatch,
 )
-from arkanoid.physics.world.records import Course
+from arkanoid.physics.world.state.records import Course
 from helpers.bodies import DISC, FLOOR, SMALL_SHAPES, room
 from hypothesis import given, settings
 from hypothesis import strategies as st

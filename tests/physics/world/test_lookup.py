@@ -10,8 +10,8 @@ from arkanoid.physics import AxisAlignedRectangle, Body, Particle, World
 from arkanoid.physics.world.lookup.neighbours import TOO_MANY
 from arkanoid.physics.world.lookup.overrides import find_override, override_table
 from arkanoid.physics.world.lookup.tree import clear_tree, find_leaves, insert_leaf, remove_leaf
-from arkanoid.physics.world.records import Box, Entry, Node, Plan, Trait, Tree
-from arkanoid.physics.world.view import LINKS, STACK
+from arkanoid.physics.world.state.records import Box, Entry, Node, Plan, Trait, Tree
+from arkanoid.physics.world.state.view import LINKS, STACK
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from arkanoid.physics import Body, Particle, World, WorldBatch
-from arkanoid.physics.world import states
+from arkanoid.physics.world.memory import stepper
 
 
 def make_world() -> World:
@@ -21,7 +21,7 @@ def step_while_others_call(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Step a world; in the middle of it, another thread attempts each of the calls."""
-    plain = states.compiled_step()
+    plain = stepper.compiled_step()
 
     def meddle(address: int, count: int, dt: float, steps: int) -> Any:
         for call in calls:
@@ -30,7 +30,7 @@ def step_while_others_call(
             thread.join()
         return plain(address, count, dt, steps)
 
-    monkeypatch.setattr(states, "compiled_step", lambda: meddle)
+    monkeypatch.setattr(stepper, "compiled_step", lambda: meddle)
     sites = [each.site for each in (world if isinstance(world, WorldBatch) else [world])]
     for site in sites:
         site.halt()

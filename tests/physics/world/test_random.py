@@ -25,7 +25,7 @@ from arkanoid.physics import (
     time_of_impact,
 )
 from arkanoid.physics.tolerances import MOST_AT_ONCE
-from arkanoid.physics.world import setup
+from arkanoid.physics.world.memory import setup
 from helpers.bodies import bodies_of, deepest_overlap
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st

@@ -20,7 +20,7 @@ from arkanoid.physics import (
     WorldBatch,
 )
 from arkanoid.physics.world.lookup.inside import inside_block
-from arkanoid.physics.world.records import Course
+from arkanoid.physics.world.state.records import Course
 from helpers.bodies import SMALL_SHAPES, room
 from helpers.processes import run_python
 from hypothesis import given, settings

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from arkanoid.physics import AxisAlignedRectangle, Body, HalfPlane, Particle, World
-from arkanoid.physics.world import setup
+from arkanoid.physics.world.memory import setup
 from helpers.bodies import DISC, FLOOR
 from hypothesis import given, settings
 from hypothesis import strategies as st

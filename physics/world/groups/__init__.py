@@ -1,0 +1,1 @@
+"""Bodies that meet at the same time, and are resolved together."""

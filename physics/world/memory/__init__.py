@@ -1,0 +1,1 @@
+"""The memory of worlds, as Python holds it: blocks that kernels step, with room, and snapshots."""

@@ -1,0 +1,1 @@
+"""What each moving body does next, and which of them is first."""

@@ -1,0 +1,1 @@
+"""What a world consists of: its records in three blocks of memory, views of them, and courses."""

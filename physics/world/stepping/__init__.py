@@ -1,0 +1,1 @@
+"""A step of a world: relaxation, the events in the order of time, and the lecture's procedure."""
