@@ -3,7 +3,7 @@
 from ...kernels import kernel
 from ...tolerances import HITS_FOR_NOTHING, MOST_AT_ONCE, MOST_RESTS
 from ..lookup.boxes import fit_here, margin_after_hit
-from ..prediction import find_stale, predict
+from ..prediction import find_stale, forget_partner, predict
 from ..records import FREE, HELD, INERT
 from ..view import (
     WorldView,
@@ -67,6 +67,9 @@ def reach_stage(world: WorldView, slot: int, stage: int) -> None:
 def plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
     """Make new plans for two bodies that have bounced, and for all that planned to meet them."""
     traits = traits_of(world)
+    for body in (a, b):
+        if traits[body].slot >= 0:
+            forget_partner(world, traits[body].slot)  # each would be planned for twice
     count = 0
     for body in (a, b):
         # A body of infinite mass keeps its course: plans to meet it still hold.

@@ -4,7 +4,7 @@ from ...kernels import kernel
 from ...tolerances import NO_APPROACH, NO_TURN, RESOLVED, ROUGHLY, STEPS_PER_TOUCH
 from ..courses import is_short_way, move_to
 from ..events import contact_point, leave_sensors, write_event
-from ..prediction import find_stale, predict
+from ..prediction import find_stale, forget_partner, predict
 from ..records import CRUSHED, HELD, HIT, Hits
 from ..view import (
     WorldView,
@@ -163,6 +163,8 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
                 count_hit(world, slot, is_short)
             if members[index].rests:
                 count_rest(world, slot)
+    for index in range(progress.members):
+        forget_partner(world, traits[members[index].body].slot)  # each would be planned for twice
     count = 0
     for index in range(progress.members):
         if members[index].inverse_mass == 0.0:
