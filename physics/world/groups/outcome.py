@@ -9,7 +9,7 @@ from ..meetings.sensors import leave_sensors
 from ..meetings.stages import count_hit, count_rest, reach_stage
 from ..plans.changes import predict_stale, shrink_box
 from ..plans.prediction import predict
-from ..plans.suitors import find_stale
+from ..plans.suitors import find_stale, forget_partner
 from ..state.courses import is_short_way, move_to
 from ..state.records import CRUSHED, HELD, HIT, Hits
 from ..state.view import (
@@ -166,6 +166,8 @@ def _plan_anew(world: WorldView, now: float, now_low: float) -> None:
                 count_hit(world, slot, is_short)
             if members[index].rests:
                 count_rest(world, slot)
+    for index in range(progress.members):
+        forget_partner(world, traits[members[index].body].slot)  # each would be planned for twice
     count = 0
     for index in range(progress.members):
         if members[index].inverse_mass == 0.0:

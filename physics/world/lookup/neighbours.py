@@ -39,7 +39,9 @@ def interacts(one: TraitRecord, other: TraitRecord) -> bool:
 @kernel
 def has_list(world: WorldView, slot: int) -> bool:
     """Return whether a body's list has all that it may meet before it leaves its box."""
-    return bool(header_of(world).has_grid and plans_of(world)[slot].near != TOO_MANY)
+    header = header_of(world)
+    # Without a grid, moving bodies are on no list.
+    return bool((header.has_grid or header.movers == 1) and plans_of(world)[slot].near != TOO_MANY)
 
 
 @kernel

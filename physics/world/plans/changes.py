@@ -4,13 +4,16 @@ from ...kernels import kernel
 from ..lookup.boxes import fit_here, margin_after_hit
 from ..state.view import WorldView, plans_of, stale_of, traits_of
 from .prediction import predict
-from .suitors import find_stale
+from .suitors import find_stale, forget_partner
 
 
 @kernel
 def plan_after_hit(world: WorldView, a: int, b: int, now: float, now_low: float) -> None:
     """Make new plans for two bodies that have bounced, and for all that planned to meet them."""
     traits = traits_of(world)
+    for body in (a, b):
+        if traits[body].slot >= 0:
+            forget_partner(world, traits[body].slot)  # each would be planned for twice
     count = 0
     for body in (a, b):
         # A body of infinite mass keeps its course: plans to meet it still hold.
