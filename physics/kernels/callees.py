@@ -23,6 +23,8 @@ from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import NativeLowering
 
+from .numba_internals import plain_indices
+
 OWN = ".own"  # ends the name of a function that belongs to one kernel
 REFERENCE_COUNTING = "NRT_"  # begins the names of Numba's functions for it
 
@@ -63,7 +65,19 @@ class _Callee:
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class _CalleeLowering(NativeLowering):  # type: ignore[misc]
+class _KernelLowering(NativeLowering):  # type: ignore[misc]
+    """Turns a typed function into LLVM's code, and takes every index as it is."""
+
+    _name = "arkanoid_kernel_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        """Write the function's library."""
+        with plain_indices(state.func_id.unique_name):
+            return bool(super().run_pass(state))
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _CalleeLowering(_KernelLowering):
     """Turns a typed function into LLVM's code, for other functions."""
 
     _name = "arkanoid_callee_lowering"
@@ -82,7 +96,7 @@ class _CalleeLowering(NativeLowering):  # type: ignore[misc]
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class _RootLowering(NativeLowering):  # type: ignore[misc]
+class _RootLowering(_KernelLowering):
     """Turns a typed function into machine code."""
 
     _name = "arkanoid_root_lowering"
@@ -91,7 +105,7 @@ class _RootLowering(NativeLowering):  # type: ignore[misc]
         """Write the function's library, which can be kept on disk."""
         state.library = _RootLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        return bool(super().run_pass(state))
+        return super().run_pass(state)
 
 
 class _Compiler(CompilerBase):  # type: ignore[misc]
@@ -118,6 +132,12 @@ class RootCompiler(_Compiler):
     """The compiler of kernels for Python."""
 
     lowering = _RootLowering
+
+
+class PortableCompiler(_Compiler):
+    """The compiler of entries for other machines, which share what they call."""
+
+    lowering = _KernelLowering
 
 
 class CalleeDispatcher(CPUDispatcher):  # type: ignore[misc]

@@ -14,7 +14,13 @@ from typing import Any, TypeVar, cast
 import numba
 
 from .cache import writable_folder
-from .callees import CalleeCompiler, CalleeDispatcher, RootCompiler, RootDispatcher
+from .callees import (
+    CalleeCompiler,
+    CalleeDispatcher,
+    PortableCompiler,
+    RootCompiler,
+    RootDispatcher,
+)
 from .numba_internals import (
     WITH_RUNTIME,
     WITHOUT_C_ENTRY,
@@ -42,8 +48,9 @@ def kernel(function: F) -> F:
     """Compile ``function`` on its first call, or load it from the disk cache.
 
     IEEE arithmetic throughout (no ``fastmath``), NumPy's error model, and the GIL is released, so
-    that threads run kernels in parallel. Arrays are passed on without counting references;
-    therefore a function that allocates memory, or returns an array, does not compile.
+    that threads run kernels in parallel. No index counts from an array's end: what is at -1 lies
+    before it. Arrays are passed on without counting references; therefore a function that allocates
+    memory, or returns an array, does not compile.
     """
     return _compile(function, **WITHOUT_RUNTIME)
 
@@ -83,9 +90,10 @@ def _compile(function: F, **options: bool) -> F:
     """Return a function's dispatcher with its cache; the function itself if interpreted."""
     if is_interpreted():
         return function
-    # What is compiled for other machines shares what it calls with others.
-    compiler: dict[str, Any] = {} if UNCACHED in os.environ else {"pipeline_class": RootCompiler}
-    compiled: Any = _njit(function, **_ALWAYS, **WITHOUT_C_ENTRY, **options, **compiler)
+    compiler = PortableCompiler if UNCACHED in os.environ else RootCompiler
+    compiled: Any = _njit(
+        function, pipeline_class=compiler, **_ALWAYS, **WITHOUT_C_ENTRY, **options
+    )
     compiled.__class__ = RootDispatcher
     compiled.make_callee = partial(_callee, function, options)
     hold_signals(compiled)

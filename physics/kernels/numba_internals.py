@@ -22,13 +22,14 @@ has one test for each part, which says what is missing and where it is used:
 ``event`` ``numba:compile``         to notice that the compiler is at work
 ``intrinsic, arrayobj``             to make arrays that count no references
 ``cgutils.alloca_once``             to make them on the stack
+``arrayobj.fix_integer_index``      to take indices as they are
 ==================================  ================================================================
 """
 
 import gc
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, cast
 
@@ -40,6 +41,7 @@ from numba.core.cgutils import alloca_once, ir  # of the llvmlite that belongs t
 from numba.core.extending import intrinsic
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
+from numba.np import arrayobj
 from numba.np.arrayobj import make_array, populate_array
 
 from .code_files import CodeFiles
@@ -199,6 +201,27 @@ class CompilerListener(events.Listener):  # type: ignore[misc]
 
 
 events.register("numba:compile", CompilerListener())
+
+
+@contextmanager
+def plain_indices(module: str) -> Iterator[None]:
+    """Let LLVM's code of one module take every index as it is: none counts from an array's end.
+
+    Else Numba would look at each signed index whether it does, which takes up to a sixth of the
+    time. Numba compiles one function at a time, whatever threads there are.
+    """
+    usual = arrayobj.fix_integer_index
+
+    def fix_integer_index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
+        if builder.module.name != module:
+            return usual(context, builder, kind, index, size)
+        return context.cast(builder, index, kind, types.intp if kind.signed else types.uintp)
+
+    arrayobj.fix_integer_index = fix_integer_index
+    try:
+        yield
+    finally:
+        arrayobj.fix_integer_index = usual
 
 
 @intrinsic

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 import pytest
 from arkanoid.physics.kernels import inner, kernel
 from arkanoid.physics.kernels.numba_internals import is_interpreted
@@ -140,3 +141,20 @@ def test_others_do_not_call_what_belongs_to_a_kernel(tmp_path: Path) -> None:
     for i in range(10):
         expected += plain(i, 2.0, 5.0, 2.0) + plain(i + 1, 5.0, 2.0, 5.0) + plain(2 * i, 5, 2, 5)
     assert other(2.0, 5.0) == expected
+
+
+def item_at(items: Any, index: Any) -> Any:
+    return items[index]
+
+
+def test_no_index_counts_from_the_end() -> None:
+    """Numba looked at each index whether it did: billiards took up to 1.18 times as long."""
+    items = np.arange(5.0)[1:]  # so there is something before it
+    callee = kernel(item_at)
+
+    @kernel
+    def caller(items: Any, index: Any) -> Any:
+        return callee(items, index) + items[index]
+
+    assert [caller(items, 2), caller(items, -1)] == [6.0, 0.0]
+    assert numba.njit(item_at)(items, -1) == 4.0, "other functions are as they were"

@@ -245,3 +245,22 @@ def test_code_for_other_machines_can_be_had() -> None:
     function = compiled.overloads[signature].fndesc.llvm_func_name
     code = compiled.inspect_llvm(signature)
     expect(f"@{function}(" in code.replace('"', ""), "Dispatcher.inspect_llvm", "afresh")
+
+
+def test_indices_are_fixed_by_one_function_for_each_module() -> None:
+    """Numba compiles a function's code into a module that has its name."""
+    modules = []
+    usual = arrayobj.fix_integer_index
+
+    def fix(context: Any, builder: Any, *others: Any) -> Any:
+        modules.append(builder.module.name)
+        return usual(context, builder, *others)
+
+    arrayobj.fix_integer_index = fix
+    try:
+        compiled = numba.njit(lambda items, index: items[index])
+        assert compiled(np.arange(3), -1) == 2
+    finally:
+        arrayobj.fix_integer_index = usual
+    (result,) = compiled.overloads.values()
+    expect(modules == [result.fndesc.unique_name], "arrayobj.fix_integer_index", "plain_indices")
