@@ -63,8 +63,8 @@ class Training:
     )
     device: Literal["cpu", "cuda", "auto"] = Field(
         default="cpu",
-        description="where the network computes, in training and playing; auto: cuda if there is "
-        "one. A graphics card pays for pictures",
+        description="where the network computes and, on cuda, games are played; auto: cuda if it "
+        "is there. A graphics card pays for pictures and for thousands of worlds",
     )
     torch_threads: Annotated[Integer, Field(ge=1, le=_MOST_THREADS)] = Field(
         default=1, description="threads of torch; the weights' last bits depend on it"

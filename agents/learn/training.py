@@ -31,8 +31,9 @@ from .checkpoints import Checkpoints, resume
 from .collapse import CollapseWatch, Warn
 from .curves import CurveWriter, numbers_of
 from .levels.sampling import make_stages
-from .model import make_model, save_model, worlds_device
+from .model import make_model, save_model
 from .periodic_validation import Judge, PeriodicValidation
+from .playing import worlds_device
 from .starting import begin
 
 # Takes the number of decisions, and numbers by their names.

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+import torch
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
@@ -44,7 +45,8 @@ def play_episodes(
     world counts: to take whichever episodes end first would favour short ones.
 
     Args:
-        worlds: native and in SAME_STEP mode, as many as there are levels times seeds.
+        worlds: native and in SAME_STEP mode, as many as there are levels times seeds; if they are
+            on a device, the policy is given tensors.
         policy: who plays.
         seeds: of each level's episodes.
         starts: how episodes begin, one for each level.
@@ -63,11 +65,9 @@ def play_episodes(
     while playing.size:
         actions[playing] = policy(observations[playing], playing)
         observations, rewards, terminated, truncated, infos = worlds.step(actions)
-        over = terminated | truncated
-        latest = _latest(infos, over)
-        measured["return"][playing] += rewards[playing]
+        over, latest = _latest(rewards, terminated | truncated, infos)
         measured["steps"][playing] += 1
-        for name in SUMMED_KEYWORDS:
+        for name in ("return", *SUMMED_KEYWORDS):
             measured[name][playing] += latest[name][playing]
         for name in FINAL_KEYWORDS:
             measured[name][playing] = latest[name][playing]
@@ -101,10 +101,19 @@ def begin_episodes(
     return observations, infos
 
 
-def _latest(infos: dict[str, Any], over: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
-    """Return what a step's infos tell; where an episode is over, its final info."""
+def _latest(
+    rewards: Any, over: Any, infos: dict[str, Any]
+) -> tuple[NDArray[np.bool_], dict[str, NDArray[Any]]]:
+    """Return which episodes are over, and rewards and infos; where one is over, its final info."""
     names = FINAL_KEYWORDS + SUMMED_KEYWORDS
-    if not over.any():
-        return {name: infos[name] for name in names}
-    final = infos["final_info"]
-    return {name: np.where(over, final[name], infos[name]) for name in names}
+    if isinstance(over, torch.Tensor):
+        final = infos["final_info"]
+        # All of it comes from the device at once: each copy would wait for it.
+        rows = [rewards, over, *(torch.where(over, final[name], infos[name]) for name in names)]
+        rewards, over, *told = torch.stack([row.to(torch.float64) for row in rows]).cpu().numpy()
+        return over > 0, {"return": rewards, **dict(zip(names, told, strict=True))}
+    latest = {"return": rewards, **{name: infos[name] for name in names}}
+    if over.any():
+        final = infos["final_info"]
+        latest |= {name: np.where(over, final[name], infos[name]) for name in names}
+    return over, latest
