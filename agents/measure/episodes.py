@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...envs.checks import counted
 from ..adapter import GymnasiumVecEnv
+from ..experiment.errors import SettingsError
 from .policy import Policy
 from .suites import WHOLE_GAMES, EpisodeStart
 
@@ -55,9 +56,30 @@ def play_episodes(
 
     Returns:
         For each of `MEASURES` an array [episodes, levels].
+
+    Raises:
+        SettingsError: a graphics card has too little memory.
     """
-    count = worlds.num_envs
     observations, _ = begin_episodes(worlds, seeds, starts)
+    try:
+        measured = _play(worlds, policy, observations, whole_games, ended)
+    except torch.OutOfMemoryError:
+        raise SettingsError(
+            f"the graphics card has too little memory for {counted(worlds.num_envs, 'game')} at "
+            "once: take fewer episodes or levels, or 'training.device' = 'cpu'"
+        ) from None
+    return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
+
+
+def _play(
+    worlds: VectorEnv[Any, Any, Any],
+    policy: Policy,
+    observations: Any,
+    whole_games: bool,
+    ended: Callable[[int], None],
+) -> dict[str, NDArray[np.float64]]:
+    """Play all worlds' episodes from their first observations; return measures [worlds]."""
+    count = worlds.num_envs
     measured = {name: np.zeros(count) for name in MEASURES}
     playing = np.arange(count)
     space = worlds.single_action_space
@@ -75,7 +97,7 @@ def play_episodes(
         ends = over[playing] if whole_games else over[playing] | (measured["cleared"][playing] > 0)
         playing = playing[~ends]
         ended(int(ends.sum()))
-    return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
+    return measured
 
 
 def begin_episodes(

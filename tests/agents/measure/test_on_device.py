@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 from arkanoid.agents import cli
+from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
@@ -15,6 +16,7 @@ from arkanoid.agents.learn import model, periodic_validation
 from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.learn.model import make_model
 from arkanoid.agents.learn.playing import ModelPolicy
+from arkanoid.agents.learn.ppo import FastPPO
 from arkanoid.agents.learn.training import train
 from arkanoid.agents.measure.episodes import adapt, play_episodes
 from arkanoid.agents.measure.suites import find_starts
@@ -78,8 +80,25 @@ def test_episodes_on_a_device_are_those_of_arrays(kind: str, deterministic: bool
 
 def test_a_model_for_other_observations_is_refused() -> None:
     policy = ModelPolicy(untrained(game()), True, 0, "cpu")
-    with pytest.raises(Exception, match=r"cannot play: it takes observations of shape"):
+    with pytest.raises(SettingsError, match=r"cannot play: it takes observations of shape"):
         policy(torch.zeros(2, 3), np.arange(2))
+
+
+def run_out(*arguments: Any, **keywords: Any) -> Any:
+    raise torch.OutOfMemoryError("CUDA out of memory. Tried to allocate 2.00 GiB.")
+
+
+def test_too_little_memory_for_a_training_or_for_its_games_gets_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It ended in torch's error, which names no setting."""
+    worlds = make_worlds(game(), 3, device="cpu")
+    with pytest.raises(SettingsError, match=r"too little memory for 3 games at once: take fewer"):
+        play_episodes(worlds, run_out, range(3))
+    monkeypatch.setattr(FastPPO, "train", run_out)
+    experiment = small(tmp_path)
+    with pytest.raises(SettingsError, match=r"too little memory: take fewer 'training\.worlds'"):
+        train(experiment, RunFolder.create(experiment))
 
 
 def measured(capsys: pytest.CaptureFixture[str]) -> Any:
