@@ -129,7 +129,7 @@ class ModelPolicy:
             return np.asarray(actions)
         if network.squash_output:
             return np.asarray(network.unscale_action(actions))
-        return np.clip(actions, space.low, space.high)
+        return np.asarray(np.clip(actions, space.low, space.high))
 
 
 def network_input(network: Any, observations: Any) -> Any:
