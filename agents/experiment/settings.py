@@ -321,6 +321,8 @@ class Experiment:
 
     def _check_features(self) -> None:
         """Refuse observations that no network here takes, and features that do not suit one."""
+        if "device" in self.env:
+            raise SettingsError("'env.device': 'training.device' says where games are played")
         observation = self.config.observation
         if observation == "dict" or self.config.channels == "last":
             raise SettingsError(

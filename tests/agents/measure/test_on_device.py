@@ -84,6 +84,12 @@ def test_a_model_for_other_observations_is_refused() -> None:
         policy(torch.zeros(2, 3), np.arange(2))
 
 
+def test_where_games_are_played_is_no_matter_of_the_environment() -> None:
+    """Baselines were given tensors, and failed."""
+    with pytest.raises(SettingsError, match=r"'env\.device': 'training\.device' says where"):
+        game(("env.device", "cpu"))
+
+
 def run_out(*arguments: Any, **keywords: Any) -> Any:
     raise torch.OutOfMemoryError("CUDA out of memory. Tried to allocate 2.00 GiB.")
 
