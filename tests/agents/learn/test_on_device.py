@@ -14,12 +14,14 @@ from arkanoid.agents import cli
 from arkanoid.agents.adapter import GymnasiumVecEnv
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import RunFolder
-from arkanoid.agents.experiment.settings import load_experiment
+from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
 from arkanoid.agents.learn import playing, training
 from arkanoid.agents.learn.curves import read_curve
+from arkanoid.agents.learn.model import make_model
 from arkanoid.agents.learn.playing import device_beside, find_device, worlds_device
 from arkanoid.agents.learn.ppo import FastPPO
+from arkanoid.agents.learn.search import speed
 from arkanoid.agents.tensor_adapter import TensorVecEnv
 from arkanoid.envs import tensor_vector_env
 from helpers.runs import SMALL, small
@@ -198,6 +200,22 @@ def test_a_training_on_a_device_resumes_bit_for_bit(tmp_path: Path) -> None:
         for each in (whole.curve, part.curve)
     ]
     assert curves[0] == curves[1]
+
+
+def test_a_search_measures_the_speed_of_games_where_they_will_be_played(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """It measured a training with games on the processor."""
+    envs: list[Any] = []
+
+    def make(experiment: Experiment, env: Any) -> PPO:
+        envs.append(env)
+        return make_model(experiment, env)
+
+    monkeypatch.setattr(speed, "worlds_device", lambda experiment: "cpu")
+    monkeypatch.setattr(speed, "make_model", make)
+    assert speed.measure_speed(small(tmp_path), 0.01) > 0
+    assert isinstance(envs[0], TensorVecEnv)
 
 
 @pytest.fixture
