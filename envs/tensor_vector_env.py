@@ -15,6 +15,7 @@ except ImportError as error:
         'pip install "arkanoid[gpu]" brings it; without device=... the results are NumPy arrays'
     ) from error
 
+from ..physics.kernels.portable.cuda import cuda_core
 from .batch.batch import Autoreset
 from .state import INFO_FIELDS, Worlds
 from .tensors.batch import TensorBatch
@@ -49,7 +50,7 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
 
     Raises:
         ImportError: a package is missing.
-        RuntimeError: there is no such card, or it is too old.
+        RuntimeError: there is no such card, or it or its driver is too old.
         TypeError, ValueError: a keyword is unknown or its value is illegal.
         MemoryError: there is no room for so many worlds.
     """
@@ -226,7 +227,7 @@ def read_device(device: Any) -> torch.device:
 
     Raises:
         TypeError, ValueError: it names none of which the game knows.
-        RuntimeError: this computer has no such card.
+        ImportError, RuntimeError: see `check_card`.
     """
     if not isinstance(device, str | torch.device):
         raise TypeError(f"device must be 'cuda', 'cuda:1', ... or 'cpu'; got {device!r}")
@@ -238,18 +239,27 @@ def read_device(device: Any) -> torch.device:
         raise ValueError(f"device must be 'cuda', 'cuda:1', ... or 'cpu'; got {device!r}")
     if found.type == "cpu":
         return torch.device("cpu")
-    _check_card(found)
+    check_card(found)
     # With its number, as its tensors name it.
     index = torch.cuda.current_device() if found.index is None else found.index
     return torch.device("cuda", index)
 
 
-def _check_card(device: torch.device) -> None:
+def check_card(device: torch.device) -> None:
+    """Check that games can be on a graphics card.
+
+    Raises:
+        ImportError: the package for cards is missing.
+        RuntimeError: there is no such card, or the card or its driver is too old.
+    """
     why = None
     if torch.version.cuda is None:
         why = "this torch was built without CUDA (pytorch.org says how to install the other one)"
     elif not torch.cuda.is_available():
-        why = "torch finds no NVIDIA card, or no driver for it (nvidia-smi shows both)"
+        why = (
+            "torch finds no NVIDIA card, or no driver that is new enough for CUDA "
+            f"{torch.version.cuda} (nvidia-smi shows both)"
+        )
     if why is not None:
         raise RuntimeError(
             f"device={str(device)!r}: {why}; without device=... the same games run on the processor"
@@ -263,3 +273,5 @@ def _check_card(device: torch.device) -> None:
             f"{torch.cuda.get_device_name(device)} is too old: the game's kernels need compute "
             "capability 8.0 (Ampere, 2020)"
         )
+    # Before the kernels are compiled for half a minute.
+    cuda_core()

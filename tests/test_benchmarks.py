@@ -68,8 +68,13 @@ def test_throughput_measures_everything_and_judges_goals_by_the_printed_figures(
 
 def test_gpu_compares_the_device_with_the_processor_and_measures_every_kind() -> None:
     """With the same entries on the processor, since a card is rarely at hand."""
-    table = run(FOLDER / "gpu.py", "--device", "cpu", "--quick", "--no-peers")
-    assert len(re.findall(r"decisions: equal$", table, re.MULTILINE)) == 2, table
+    parts = ("games", "speed", "training")
+    table = run(FOLDER / "gpu.py", "--device", "cpu", "--quick", "--only", *parts)
+    assert len(re.findall(r"^  .* worlds +[\d,]+  equal$", table, re.MULTILINE)) == 7, table
     assert "DIFFERENT" not in table
-    assert len(re.findall(r"^  .* worlds, cpu +[\d,]+ +[\d.]+ x$", table, re.MULTILINE)) == 6, table
+    ratios = re.findall(r"^  .* worlds, cpu +[\d,]+ +[\d.]+ x$", table, re.MULTILINE)
+    assert len(ratios) == 6 + 1, table  # of games, and of a training
     assert len(re.findall(r"^  .* worlds, all cores +[\d,]+$", table, re.MULTILINE)) == 6, table
+    assert len(re.findall(r"^  (quick|lite), .* +[\d,]+  in [\d.]+ s$", table, re.MULTILINE)) == 2
+    assert len(re.findall(r"^  .* plays .*(?: +-?[\d.]+){3}$", table, re.MULTILINE)) == 5, table
+    assert max(map(len, table.splitlines())) <= 80, table

@@ -63,8 +63,8 @@ class Training:
     )
     device: Literal["cpu", "cuda", "auto"] = Field(
         default="cpu",
-        description="where the network computes, in training and playing; auto: cuda if there is "
-        "one. A graphics card pays for pictures",
+        description="where the network computes and, on cuda, games are played; auto: cuda if it "
+        "is there. A graphics card pays for pictures and for thousands of worlds",
     )
     torch_threads: Annotated[Integer, Field(ge=1, le=_MOST_THREADS)] = Field(
         default=1, description="threads of torch; the weights' last bits depend on it"
@@ -321,6 +321,8 @@ class Experiment:
 
     def _check_features(self) -> None:
         """Refuse observations that no network here takes, and features that do not suit one."""
+        if "device" in self.env:
+            raise SettingsError("'env.device': 'training.device' says where games are played")
         observation = self.config.observation
         if observation == "dict" or self.config.channels == "last":
             raise SettingsError(

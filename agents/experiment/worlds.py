@@ -34,8 +34,8 @@ def make_worlds(
         device: where the worlds are; None: in this processor's memory, as NumPy's arrays.
 
     Raises:
-        SettingsError: the environment refuses its arguments, or so many worlds do not fit into
-            memory.
+        SettingsError: the environment refuses its arguments, the device can't play the games, or
+            so many worlds do not fit into memory.
     """
     too_many = f"not enough memory for {num_worlds:,} worlds at once"
     if num_worlds > MOST_WORLDS:
@@ -58,6 +58,8 @@ def make_worlds(
             **arguments,
         )
     except (TypeError, ValueError, ImportError, RuntimeError, gym.error.Error) as error:
+        if device is not None and isinstance(error, ImportError | RuntimeError):
+            raise SettingsError(f"no games on {device}: {error}") from error
         raise SettingsError(f"{experiment.env_id} refuses the [env] table: {error}") from error
     except MemoryError:
         raise SettingsError(too_many) from None

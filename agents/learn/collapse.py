@@ -26,6 +26,7 @@ from ..measure.baselines import NoOp, RandomPolicy
 from ..measure.episodes import play_episodes
 from ..measure.policy import Policy
 from .callbacks import recent_mean
+from .playing import network_input
 
 ALWAYS = 0.99  # as often, or as probable, counts as always
 CERTAIN = 0.05  # an entropy below this part of the largest one counts as certain
@@ -135,12 +136,12 @@ class Watched:
         self._certainty = np.zeros((num_worlds, 2))  # the sum of probabilities, and their number
         self._calls = 0
 
-    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+    def __call__(self, observations: Any, worlds: NDArray[np.int64]) -> NDArray[Any]:
         """Return the policy's actions."""
         actions = self._policy(observations, worlds)
         self._taken[worlds, actions] += 1
         if self._calls % _LOOK_EVERY == 0:
-            seen = self._network.obs_to_tensor(observations)[0]
+            seen = network_input(self._network, observations)
             with torch.no_grad():
                 probs = self._network.get_distribution(seen).distribution.probs
             self._certainty[worlds] += np.stack(

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from numpy.typing import NDArray
 from stable_baselines3 import PPO
 from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
 from stable_baselines3.common.utils import LinearSchedule
@@ -28,6 +27,7 @@ from ..experiment.worlds import make_worlds, native
 from ..measure.policy import Policy
 from .checkpoints import read_checkpoint
 from .networks import ACTIVATIONS, extractor_arguments
+from .playing import ModelPolicy, device_beside, find_device
 from .ppo import FastPPO
 from .tensors import is_like, read_entry, read_tensors
 
@@ -64,36 +64,6 @@ def make_model(experiment: Experiment, venv: VecEnv) -> PPO:
     )
 
 
-def find_device(name: str) -> torch.device:
-    """Return the device of the setting ``training.device``.
-
-    Raises `SettingsError` if it is cuda, and torch finds none.
-    """
-    if name == "cpu":
-        return torch.device("cpu")
-    if torch.cuda.is_available():
-        return torch.device("cuda")
-    if name == "cuda":
-        built = "this torch is built without CUDA" if torch.version.cuda is None else "none found"
-        raise SettingsError(
-            f"'training.device' = 'cuda' needs a graphics card of NVIDIA ({built}): take 'auto' or "
-            "'cpu'"
-        )
-    return torch.device("cpu")
-
-
-def worlds_device(experiment: Experiment) -> str | None:
-    """Return the device where the worlds of a training are; None: this processor, with arrays.
-
-    They are where the network is, if the trainer can make use of it.
-    """
-    trains_there = experiment.training.trainer == "fast" and experiment.config.observation != "dict"
-    if not trains_there or experiment.curriculum.sampling != "uniform":
-        return None
-    device = find_device(experiment.training.device)
-    return device.type if device.type == "cuda" else None
-
-
 def save_model(model: PPO, path: Path, experiment: Experiment) -> None:
     """Write the model and its settings to ``path``, atomically; `PPO.load` reads it.
 
@@ -127,7 +97,8 @@ def load_policy(model: ModelFile, experiment: Experiment) -> Policy:
     network = _unpickled(model.path) if model.run.trusted else rebuild_network(model, experiment)
     settings = experiment.evaluation
     seed = spread_seed(settings.seed, Purpose.EVALUATION_POLICY)
-    return ModelPolicy(network.to(device), settings.deterministic, seed)
+    worlds = device_beside(device)
+    return ModelPolicy(network.to(device), settings.deterministic, seed, worlds)
 
 
 def read_weights(path: Path, experiment: Experiment) -> dict[str, torch.Tensor]:
@@ -150,42 +121,6 @@ def _playing_device(model: ModelFile, experiment: Experiment) -> torch.device:
     wanted = experiment.training.device
     as_trained = wanted == "cuda" and model.run.experiment().training.device == "cuda"
     return find_device("auto" if as_trained else wanted)
-
-
-class ModelPolicy:
-    """A model as a policy.
-
-    Args:
-        model: may change between two calls.
-        deterministic: whether to take the likeliest action or to draw one.
-        seed: of the draws, which leave torch's own random numbers alone.
-    """
-
-    def __init__(self, model: PPO | BasePolicy, deterministic: bool, seed: int) -> None:
-        self._model = model
-        self._deterministic = deterministic
-        self._device = torch.device(model.device)
-        self._random = torch.Generator(self._device).manual_seed(seed).get_state()
-
-    def __call__(self, observations: NDArray[Any], worlds: NDArray[Any]) -> NDArray[Any]:
-        """Return the actions for observations [n, ...].
-
-        Raises `SettingsError` if the network's output is not finite, or it cannot take these
-        observations.
-        """
-        try:
-            if self._deterministic:
-                return self._model.predict(observations, deterministic=True)[0]
-            on_card = self._device.type == "cuda"
-            random: Any = torch.cuda if on_card else torch.random
-            with torch.random.fork_rng(devices=[self._device] if on_card else []):
-                random.set_rng_state(self._random)
-                actions = self._model.predict(observations, deterministic=False)[0]
-                self._random = random.get_rng_state()
-            return actions
-        except ValueError as error:
-            reason = str(error).strip().partition("\n")[0]
-            raise SettingsError(f"the model cannot play: {reason}") from None
 
 
 class _UnfilledPolicy(ActorCriticPolicy):

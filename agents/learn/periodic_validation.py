@@ -16,7 +16,7 @@ from ..measure.episodes import MEASURES, play_episodes
 from ..measure.policy import Policy
 from ..measure.suites import WHOLE_GAMES, find_starts
 from .collapse import Warn, Watched, stuck_warning
-from .model import ModelPolicy
+from .playing import ModelPolicy, device_beside, find_device
 
 _LOGGED = tuple(name for name in MEASURES if name != "bricks_left")
 
@@ -70,7 +70,8 @@ class PeriodicValidation(BaseCallback):
         self._whole_games = not levels
         self._starts = find_starts(experiment, levels) if levels else (WHOLE_GAMES,)
         num_worlds = len(self._starts) * self._settings.episodes
-        self._worlds = make_worlds(experiment, num_worlds, experiment.game)
+        device = device_beside(find_device(experiment.training.device))
+        self._worlds = make_worlds(experiment, num_worlds, experiment.game, device=device)
 
     def _on_training_start(self) -> None:
         self._began = time.process_time()

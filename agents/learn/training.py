@@ -10,6 +10,7 @@ from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 from typing import Any
 
+import torch
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputFormat
 from torch.utils.tensorboard import SummaryWriter
@@ -31,8 +32,9 @@ from .checkpoints import Checkpoints, resume
 from .collapse import CollapseWatch, Warn
 from .curves import CurveWriter, numbers_of
 from .levels.sampling import make_stages
-from .model import make_model, save_model, worlds_device
+from .model import make_model, save_model
 from .periodic_validation import Judge, PeriodicValidation
+from .playing import worlds_device
 from .starting import begin
 
 # Takes the number of decisions, and numbers by their names.
@@ -63,7 +65,8 @@ def train(
 
     Raises:
         SettingsError: the environment refuses its arguments, there is no checkpoint or a damaged
-            one, another process trains this run, or its files cannot be written.
+            one, another process trains this run, its files cannot be written, or a graphics card
+            has too little memory.
     """
     with folder.locked():
         if resumed:
@@ -75,6 +78,11 @@ def train(
                 return _train(experiment, folder, venv, resumed, on_measure, on_log, shows_progress)
         except OSError as error:
             raise SettingsError(_cannot_write(folder, error)) from error
+        except torch.OutOfMemoryError:
+            raise SettingsError(
+                "the graphics card has too little memory: take fewer 'training.worlds', fewer "
+                "'ppo.n_steps' or a smaller 'ppo.batch_size'"
+            ) from None
         finally:
             venv.close()
 

@@ -21,7 +21,7 @@ from .intervals import (
     mean,
     stratified_interval,
 )
-from .policy import Policy
+from .policy import Policy, device_of
 from .suites import EpisodeStart, Suite, make_suites
 
 # The tables' columns: each measure and its heading.
@@ -130,7 +130,8 @@ def _episodes(experiment: Experiment, suite: Suite, baseline: str) -> int:
 def _play_agent(
     experiment: Experiment, suite: Suite, policy: Policy, ended: Callable[[int], None]
 ) -> dict[str, NDArray[np.float64]]:
-    return _play(experiment, suite, suite.episodes, experiment.game, lambda worlds: policy, ended)
+    config, device = experiment.game, device_of(policy)
+    return _play(experiment, suite, suite.episodes, config, lambda worlds: policy, ended, device)
 
 
 def _play_baseline(
@@ -157,9 +158,10 @@ def _play(
     config: Config,
     make_policy: Callable[[VectorEnv[Any, Any, Any]], Policy],
     ended: Callable[[int], None],
+    device: str | None = None,
 ) -> dict[str, NDArray[np.float64]]:
-    """Play a suite with the policy that is made for its worlds."""
-    worlds = make_worlds(experiment, len(suite.starts) * episodes, config)
+    """Play a suite with the policy that is made for its worlds, on a device or here."""
+    worlds = make_worlds(experiment, len(suite.starts) * episodes, config, device=device)
     try:
         return play_episodes(
             worlds,

@@ -4,11 +4,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+import torch
 from gymnasium.vector import VectorEnv
 from numpy.typing import NDArray
 
 from ...envs.checks import counted
 from ..adapter import GymnasiumVecEnv
+from ..experiment.errors import SettingsError
 from .policy import Policy
 from .suites import WHOLE_GAMES, EpisodeStart
 
@@ -44,7 +46,8 @@ def play_episodes(
     world counts: to take whichever episodes end first would favour short ones.
 
     Args:
-        worlds: native and in SAME_STEP mode, as many as there are levels times seeds.
+        worlds: native and in SAME_STEP mode, as many as there are levels times seeds; if they are
+            on a device, the policy is given tensors.
         policy: who plays.
         seeds: of each level's episodes.
         starts: how episodes begin, one for each level.
@@ -53,9 +56,30 @@ def play_episodes(
 
     Returns:
         For each of `MEASURES` an array [episodes, levels].
+
+    Raises:
+        SettingsError: a graphics card has too little memory.
     """
-    count = worlds.num_envs
     observations, _ = begin_episodes(worlds, seeds, starts)
+    try:
+        measured = _play(worlds, policy, observations, whole_games, ended)
+    except torch.OutOfMemoryError:
+        raise SettingsError(
+            f"the graphics card has too little memory for {counted(worlds.num_envs, 'game')} at "
+            "once: take fewer episodes or levels, or 'training.device' = 'cpu'"
+        ) from None
+    return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
+
+
+def _play(
+    worlds: VectorEnv[Any, Any, Any],
+    policy: Policy,
+    observations: Any,
+    whole_games: bool,
+    ended: Callable[[int], None],
+) -> dict[str, NDArray[np.float64]]:
+    """Play all worlds' episodes from their first observations; return measures [worlds]."""
+    count = worlds.num_envs
     measured = {name: np.zeros(count) for name in MEASURES}
     playing = np.arange(count)
     space = worlds.single_action_space
@@ -63,11 +87,9 @@ def play_episodes(
     while playing.size:
         actions[playing] = policy(observations[playing], playing)
         observations, rewards, terminated, truncated, infos = worlds.step(actions)
-        over = terminated | truncated
-        latest = _latest(infos, over)
-        measured["return"][playing] += rewards[playing]
+        over, latest = _latest(rewards, terminated | truncated, infos)
         measured["steps"][playing] += 1
-        for name in SUMMED_KEYWORDS:
+        for name in ("return", *SUMMED_KEYWORDS):
             measured[name][playing] += latest[name][playing]
         for name in FINAL_KEYWORDS:
             measured[name][playing] = latest[name][playing]
@@ -75,7 +97,7 @@ def play_episodes(
         ends = over[playing] if whole_games else over[playing] | (measured["cleared"][playing] > 0)
         playing = playing[~ends]
         ended(int(ends.sum()))
-    return {name: values.reshape(len(starts), -1).T for name, values in measured.items()}
+    return measured
 
 
 def begin_episodes(
@@ -101,10 +123,19 @@ def begin_episodes(
     return observations, infos
 
 
-def _latest(infos: dict[str, Any], over: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
-    """Return what a step's infos tell; where an episode is over, its final info."""
+def _latest(
+    rewards: Any, over: Any, infos: dict[str, Any]
+) -> tuple[NDArray[np.bool_], dict[str, NDArray[Any]]]:
+    """Return which episodes are over, and rewards and infos; where one is over, its final info."""
     names = FINAL_KEYWORDS + SUMMED_KEYWORDS
-    if not over.any():
-        return {name: infos[name] for name in names}
-    final = infos["final_info"]
-    return {name: np.where(over, final[name], infos[name]) for name in names}
+    if isinstance(over, torch.Tensor):
+        final = infos["final_info"]
+        # All of it comes from the device at once: each copy would wait for it.
+        rows = [rewards, over, *(torch.where(over, final[name], infos[name]) for name in names)]
+        rewards, over, *told = torch.stack([row.to(torch.float64) for row in rows]).cpu().numpy()
+        return over > 0, {"return": rewards, **dict(zip(names, told, strict=True))}
+    latest = {"return": rewards, **{name: infos[name] for name in names}}
+    if over.any():
+        final = infos["final_info"]
+        latest |= {name: np.where(over, final[name], infos[name]) for name in names}
+    return over, latest

@@ -13,11 +13,21 @@ from ..experiment.worlds import native
 
 
 class Policy(Protocol):
-    """An agent or a baseline."""
+    """An agent or a baseline.
 
-    def __call__(self, observations: NDArray[Any], worlds: NDArray[np.int64]) -> NDArray[Any]:
+    One that has an attribute ``device`` which is not None plays in worlds on that device, and is
+    given tensors of torch.
+    """
+
+    def __call__(self, observations: Any, worlds: NDArray[np.int64]) -> NDArray[Any]:
         """Return actions [n, ...] for observations [n, ...] of worlds, given by indices [n]."""
         ...
+
+
+def device_of(policy: Policy) -> str | None:
+    """Return where the worlds are that a policy plays in; None: here, with NumPy's arrays."""
+    device: str | None = getattr(policy, "device", None)
+    return device
 
 
 def encode_actions(space: Any, moves: NDArray[Any], fire: bool = False) -> NDArray[Any]:

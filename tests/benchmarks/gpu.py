@@ -2,131 +2,121 @@
 
 Run: python tests/benchmarks/gpu.py [--device cpu] [--quick]
 
-First, both play the same decisions and every number is compared. Then it measures decisions per
-second, with random actions that are drawn before, after the games have drifted apart. A ratio says
-how many times as fast a row is as the same games on all cores. Peers take part where they can be
-imported. A card takes about four minutes.
+1. games: both play the same decisions, and every number is compared; at most 100,000 decisions of
+   4,096 worlds, and for --patience seconds a game. 600 are enough for all of them on 16 cores.
+2. speed: decisions per second, with random actions that are drawn before, after the games have
+   drifted apart.
+3. training: decisions per second of the loop alone; then `quick` and `lite` are trained, for about
+   10 and 60 s on an H100, and play as `arkanoid evaluate` does, beside the packaged `lite`.
+4. peers: those that can be imported: gymnax, PufferLib, env-breakoutatari2600-turbo-native.
+
+A ratio says how many times as fast a row is as all cores with the same games. All parts take an
+H100 less than five minutes.
 """
 
 import argparse
 import itertools
 import os
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from importlib.metadata import version
+from multiprocessing import get_context
 from typing import Any
 
 import arkanoid  # noqa: F401
-import gymnasium as gym
 import numpy as np
 import torch
 from arkanoid.envs.state import INFO_FIELDS
+from arkanoid.envs.tensors.entries import STEPS
+from arkanoid.physics.kernels.portable.ptx import make_ptx
+from cards.measuring import ACTIONS, QUICK, THOROUGH, Effort, make, player, rate, say, waiting
+from cards.peers import show_peers
+from cards.training import show_training
 
 LITE, FULL = "ArkanoidLite-v0", "Arkanoid-v0"
 GREY = {"observation": "rgb", "grey": True}
-# Decisions of which each step is compared, with all that the games have to offer.
-FEATURES = {"landing": True, "life_penalty": 1.0, "levels": "train", "lives": 1}
-# Label, id, keywords, the numbers of worlds.
+SAME, NEXT, DISABLED = ({"autoreset_mode": mode} for mode in ("SameStep", "NextStep", "Disabled"))
+LIVELY = {"life_penalty": 1.0, "levels": "train", "lives": 1}
+SHORT = LIVELY | {"max_decisions": 40, "capsule_rate": 1.0}
+BOTH = {"observation": "dict", "actions": "box"}
+LIVES = {"observation": "grid", "episodic_life": True}
+# What is compared: label, id, keywords, whether with fewer worlds and for a part of the time.
+COMPARED: list[tuple[str, str, dict[str, Any], bool]] = [
+    ("lite, landing", LITE, LIVELY | SAME | {"landing": True}, False),
+    ("full, landing", FULL, LIVELY | SAME | {"landing": True}, False),
+    ("full, next step", FULL, SHORT | NEXT, True),
+    ("full, resets by hand", FULL, SHORT | DISABLED, True),
+    ("full, grid, lives as episodes", FULL, LIVES | SAME, True),
+    ("full, 2 pictures", FULL, SHORT | SAME | GREY | {"stack": 2}, True),
+    ("full, pictures and vector, velocities", FULL, SHORT | SAME | BOTH, True),
+]
+# What is measured: label, id, keywords, the numbers of worlds.
 KINDS: list[tuple[str, str, dict[str, Any], tuple[int, ...]]] = [
     ("lite, vector", LITE, {}, (4096, 16384, 65536, 262144, 1048576)),
     ("lite, landing", LITE, {"landing": True}, (65536, 262144)),
     ("full, vector", FULL, {}, (4096, 65536, 262144)),
     ("full, grid", FULL, {"observation": "grid"}, (32768,)),
     ("lite, picture", LITE, GREY | {"stack": 1}, (4096, 32768)),
-    ("lite, stack of 4 pictures", LITE, GREY | {"stack": 4}, (4096, 32768)),
+    ("lite, 4 pictures", LITE, GREY | {"stack": 4}, (4096, 32768)),
 ]
-ACTIONS = 64  # steps until the actions repeat
-LABEL = 56  # characters
+PARTS = ("games", "speed", "training", "peers")
 
 
-@dataclass(frozen=True)
-class Effort:
-    """How much is compared and measured."""
+class Judge:
+    """Tells whether tensors always had the bits of arrays; it does not wait for the device."""
 
-    worlds: int  # of the comparison
-    decisions: int  # of each world there, at most
-    patience: float  # seconds for each game's comparison
-    warm_up: int  # decisions
-    turn: float  # seconds
-    most_worlds: int
+    def __init__(self, device: str) -> None:
+        self.device = device
+        self.same = torch.ones((), dtype=torch.bool, device=device)
 
-
-THOROUGH = Effort(4096, 100_000, 35.0, warm_up=100, turn=1.0, most_worlds=1 << 20)
-QUICK = Effort(16, 20, 5.0, warm_up=2, turn=0.02, most_worlds=32)
-
-
-def make(device: str | None, game: str, worlds: int, **keywords: Any) -> Any:
-    """Return worlds as tensors on a device; with None, as arrays, played by all cores."""
-    place = {"threads": os.cpu_count()} if device is None else {"device": device}
-    return gym.make_vec(
-        f"arkanoid:{game}",
-        worlds,
-        vectorization_mode="vector_entry_point",
-        autoreset_mode="SameStep",
-        copy=False,
-        **(place | keywords),
-    )
+    def compare(self, found: Any, wanted: Any) -> None:
+        """Compare a tensor with an array, or dictionaries and lists of them."""
+        if isinstance(wanted, dict):
+            for key in wanted:
+                self.compare(found[key], wanted[key])
+        elif isinstance(wanted, list):
+            for pair in zip(found, wanted, strict=True):
+                self.compare(*pair)
+        else:
+            other = torch.from_numpy(np.array(wanted)).to(self.device)
+            assert (found.shape, found.dtype) == (other.shape, other.dtype)
+            # As bytes: 0 is not -0.
+            same = found.contiguous().view(torch.uint8) == other.view(torch.uint8)
+            self.same &= same.all()
 
 
-def say(label: str, text: str) -> None:
-    """Print a row."""
-    print(f"  {label:{LABEL}}{text}", flush=True)
-
-
-def compare(device: str, game: str, effort: Effort) -> None:
+def compare(
+    device: str, label: str, game: str, keywords: dict[str, Any], effort: Effort, part: bool
+) -> None:
     """Play the same decisions in both ways, and say in how many anything was different."""
-    env, other = (make(place, game, effort.worlds, **FEATURES) for place in (device, None))
-    same = torch.ones((), dtype=torch.bool, device=device)
-    seen, expected = env.reset(seed=1)[0], other.reset(seed=1)[0]
-    random = np.random.default_rng(0)
-    begin, played = time.perf_counter(), 0
-    while played < effort.decisions and time.perf_counter() - begin < effort.patience:
-        actions = random.integers(0, env.single_action_space.n, effort.worlds)
+    worlds, share = (min(effort.worlds, 512), 0.1) if part else (effort.worlds, 1.0)
+    env, other = (make(place, game, worlds, **keywords) for place in (device, None))
+    judge, random = Judge(device), np.random.default_rng(0)
+    judge.compare(env.reset(seed=1)[0], other.reset(seed=1)[0])
+    num_actions = getattr(env.single_action_space, "n", None)
+    begin, played, patience = time.perf_counter(), 0, share * effort.patience
+    while played < effort.decisions and time.perf_counter() - begin < patience:
+        actions: Any = random.uniform(-1.0, 1.0, (worlds, 2)).astype(np.float32)
+        if num_actions is not None:
+            actions = random.integers(0, num_actions, worlds)
         *found, infos = env.step(actions)
         *wanted, other_infos = other.step(actions)
-        pairs = [*zip(found, wanted, strict=True)]
-        pairs += [(infos[key], other_infos[key]) for key in INFO_FIELDS]
-        for tensor, array in pairs:
-            bits = torch.from_numpy(np.ascontiguousarray(array)).to(device)
-            same &= (tensor == bits).all()
+        judge.compare(found, wanted)
+        judge.compare(infos, {key: other_infos[key] for key in INFO_FIELDS})
+        over = wanted[2] | wanted[3]
+        for world in np.flatnonzero(over)[:4] if "final_obs" in infos else ():
+            last = infos["final_obs"]
+            one = {key: last[key][world] for key in last} if isinstance(last, dict) else last[world]
+            judge.compare(one, other_infos["final_obs"][world])
+        if keywords["autoreset_mode"] == "Disabled" and over.any():
+            judge.compare(*(each.reset(options={"reset_mask": over})[0] for each in (env, other)))
         played += 1
-    whole = bool(same) and env.snapshot() == other.snapshot()
-    assert seen.shape == expected.shape
-    decisions = played * effort.worlds
-    say(
-        f"{game}, {effort.worlds:,} worlds, landing, life_penalty, levels",
-        f"{decisions:14,} decisions: {'equal' if whole else 'DIFFERENT'}",
-    )
+    whole = bool(judge.same) and env.snapshot() == other.snapshot()
+    result = "equal" if whole else "DIFFERENT"
+    say(f"{label}, {worlds:,} worlds", f"{played * worlds:14,}  {result}")
     env.close()
     other.close()
-
-
-def rate(
-    play: Callable[[int], None], worlds: int, effort: Effort, wait: Callable[[], None]
-) -> float:
-    """Return decisions per second of what plays so many steps."""
-    play(effort.warm_up)
-    wait()
-    steps = 1
-    while True:
-        begin = time.perf_counter()
-        play(steps)
-        wait()
-        seconds = time.perf_counter() - begin
-        if seconds >= effort.turn:
-            return steps * worlds / seconds
-        steps = max(2 * steps, int(1.2 * steps * effort.turn / max(seconds, 1e-6)))
-
-
-def player(env: Any, actions: Iterator[Any]) -> Callable[[int], None]:
-    """Return what plays steps in a vector environment."""
-
-    def play(steps: int) -> None:
-        for chosen in itertools.islice(actions, steps):
-            env.step(chosen)
-
-    return play
 
 
 def measure_ours(
@@ -137,87 +127,9 @@ def measure_ours(
     env.reset(seed=0)
     drawn = np.random.default_rng(0).integers(0, env.single_action_space.n, (ACTIONS, worlds))
     actions = list(drawn) if device is None else list(torch.from_numpy(drawn).to(device))
-    wait = torch.cuda.synchronize if str(device).startswith("cuda") else lambda: None
-    found = rate(player(env, itertools.cycle(actions)), worlds, effort, wait)
+    found = rate(player(env, itertools.cycle(actions)), worlds, effort, waiting(device))
     env.close()
     return found
-
-
-def measure_gymnax(worlds: int, effort: Effort) -> float:
-    """Return the decisions per second of MinAtar's Breakout on JAX, in a compiled loop."""
-    import gymnax
-    import jax
-
-    env, params = gymnax.make("Breakout-MinAtar")
-    length = 50
-    step = jax.vmap(env.step, (0, 0, 0, None))
-
-    @jax.jit
-    def play_some(key: Any, states: Any) -> Any:
-        def once(carry: Any, _: Any) -> Any:
-            key, states = carry
-            key, draw, chance = jax.random.split(key, 3)
-            actions = jax.random.randint(draw, (worlds,), 0, 3)
-            result = step(jax.random.split(chance, worlds), states, actions, params)
-            seen, states, reward = result[:3]
-            return (key, states), (reward.sum(), seen.sum())
-
-        return jax.lax.scan(once, (key, states), None, length)
-
-    key = jax.random.key(0)
-    states = jax.vmap(env.reset, (0, None))(jax.random.split(key, worlds), params)[1]
-    carry = [(key, states)]
-
-    def play(steps: int) -> None:
-        for _ in range(steps):
-            carry[0], _ = play_some(*carry[0])
-
-    return length * rate(play, worlds, effort, lambda: jax.block_until_ready(carry[0]))
-
-
-def measure_turbo(worlds: int, effort: Effort) -> float:
-    """Return the decisions per second of a native Breakout, as pictures, on all cores."""
-    import env_breakoutatari2600_turbo_native as turbo
-
-    env = gym.make_vec(
-        turbo.GYMNASIUM_ENV_ID,
-        worlds,
-        "vector_entry_point",
-        game="Breakout-Atari2600-v0",
-        num_threads=os.cpu_count(),
-        frame_stack=1,
-        obs_copy="unsafe_view",
-    )
-    env.reset(seed=0)
-    random = np.random.default_rng(0)
-    actions = list(random.integers(0, env.single_action_space.n, (ACTIONS, worlds)))
-
-    def play(steps: int) -> None:
-        for index in range(steps):
-            _, _, terminated, truncated, _ = env.step(actions[index % ACTIONS])
-            if (terminated | truncated).any():
-                env.reset(options={"reset_mask": terminated | truncated})
-
-    found = rate(play, worlds, effort, lambda: None)
-    env.close()
-    return found
-
-
-def measure_puffer(worlds: int, effort: Effort) -> float:
-    """Return the decisions per second of PufferLib's Breakout, on one core."""
-    from pufferlib.ocean.breakout import breakout
-
-    env = breakout.Breakout(num_envs=worlds)
-    env.reset(seed=0)
-    drawn = np.random.default_rng(0).integers(0, env.single_action_space.n, (ACTIONS, worlds))
-    return rate(player(env, itertools.cycle(list(drawn))), worlds, effort, lambda: None)
-
-
-PEERS: list[tuple[str, Callable[[int, Effort], float], tuple[int, ...]]] = [
-    ("gymnax: MinAtar's Breakout, 10 x 10 x 4", measure_gymnax, (4096, 65536)),
-    ("turbo-native: Breakout, a picture, all cores", measure_turbo, (1024,)),
-    ("PufferLib: Breakout, vector, one core", measure_puffer, (4096,)),
-]
 
 
 def show_ours(device: str, effort: Effort) -> None:
@@ -231,20 +143,17 @@ def show_ours(device: str, effort: Effort) -> None:
             try:
                 found = measure_ours(device, game, worlds, keywords, effort)
             except MemoryError as error:
-                say(label, f"left out: {error}")
+                say(label, f"{'left out':>14}")
+                print(f"    {error}"[:79])
                 continue
             say(label, f"{found:14,.0f}{found / cores:9.2f} x")
 
 
-def show_peers(effort: Effort) -> None:
-    """Print the rows of peers, or why one is left out."""
-    for name, measure, counts in PEERS:
-        for count in dict.fromkeys(min(count, effort.most_worlds) for count in counts):
-            label = f"{name}, {count:,} worlds"
-            try:
-                say(label, f"{measure(count, effort):14,.0f}")
-            except Exception as error:  # whatever a peer does not like here
-                say(label, f"left out: {type(error).__name__}: {str(error)[:80]}")
+def prepare() -> None:
+    """Compile the kernels of all kinds of observations at the same time; they are kept on disk."""
+    entries = [[run.entry for run in runs] for runs in STEPS.values()]
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        list(pool.map(make_ptx, entries))
 
 
 def main() -> None:
@@ -254,11 +163,14 @@ def main() -> None:
     )
     parser.add_argument("--device", help="of torch; a card if there is one, or else left out")
     parser.add_argument("--quick", action="store_true", help="try it out; the figures mean nothing")
-    parser.add_argument("--no-peers", action="store_true", help="leave out other packages")
+    parser.add_argument("--only", choices=PARTS, nargs="+", default=PARTS, help="some of the parts")
+    parser.add_argument("--patience", type=float, help="seconds to compare each of both games")
     options = parser.parse_args()
     # JAX would take most of the card's memory for itself.
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
     effort = QUICK if options.quick else THOROUGH
+    if options.patience is not None:
+        effort = replace(effort, patience=options.patience)
     device = options.device or ("cuda" if torch.cuda.is_available() else None)
     if device is None:
         print("no graphics card: --device cpu --quick tries out what a card would do")
@@ -266,12 +178,19 @@ def main() -> None:
     card = torch.cuda.get_device_name() if device.startswith("cuda") else "this processor"
     begin = time.perf_counter()
     print(f"{card}, torch {torch.__version__}, {os.cpu_count()} cores, numba {version('numba')}")
-    print("The same decisions on the device and on the processor:")
-    for game in (LITE, FULL):
-        compare(device, game, effort)
-    print("Decisions per second (x: times all cores with the same observations):")
-    show_ours(device, effort)
-    if not options.no_peers:
+    if device.startswith("cuda"):
+        prepare()
+    if "games" in options.only:
+        print("The same decisions on the device and on the processor:")
+        for label, game, keywords, part in COMPARED:
+            compare(device, label, game, keywords, effort, part)
+    if "speed" in options.only:
+        print("Decisions per second (x: times all cores with the same observations):")
+        show_ours(device, effort)
+    if "training" in options.only:
+        print("Training, decisions per second (x: times a core):")
+        show_training(device, effort)
+    if "peers" in options.only:
         print("Peers, decisions per second:")
         show_peers(effort)
     print(f"{time.perf_counter() - begin:.0f} s")

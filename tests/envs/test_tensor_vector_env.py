@@ -4,8 +4,10 @@ Everything is compared, bit for bit, with `ArkanoidVectorEnv`.
 """
 
 import copy
+import gc
 import pickle
 
+import gymnasium as gym
 import numpy as np
 import pytest
 import torch
@@ -91,7 +93,7 @@ def test_options_and_masks_in_the_midst_of_games():
     assert env.snapshot() == other.snapshot()
 
 
-@pytest.mark.parametrize("kind", ["vector", "grid", "rgb"])
+@pytest.mark.parametrize("kind", ["vector", "grid", "rgb", "dict"])
 def test_snapshots_move_both_ways(kind):
     env, other = pair(**(LIVELY | KINDS[kind]))
     env.reset(seed=5)
@@ -177,6 +179,67 @@ def test_copies(kind, copied):
     shared.append(first[4]["score"].data_ptr() == second[4]["score"].data_ptr())
     shared.append(first[4]["_score"].data_ptr() == second[4]["_score"].data_ptr())
     assert shared == [not copied] * 6
+
+
+@pytest.mark.parametrize("kind", ["landing", "dict"])
+def test_results_belong_to_the_caller(kind):
+    """With ``copy=True``, what is written into them changes neither games nor later results."""
+    env, other = pair(autoreset_mode="SameStep", **(LIVELY | KINDS[kind]))
+    random = np.random.default_rng(3)
+    results = env.reset(seed=3)
+    other.reset(seed=3)
+    for _ in range(30):
+        scribble(results)
+        actions = draw_actions(other, random)
+        results = env.step(torch.from_numpy(actions))
+        same_step(results, other.step(actions))
+    seen = env.observe()
+    scribble(env.observe())
+    assert str(env.observe()) == str(seen)
+    assert env.snapshot() == other.snapshot()
+
+
+def scribble(results):
+    """Write nonsense into all tensors."""
+    if isinstance(results, torch.Tensor):
+        results.fill_(1)
+    else:
+        for part in results.values() if isinstance(results, dict) else results:
+            scribble(part)
+
+
+def test_results_outlive_the_environment():
+    env = begun(3, copy=False)
+    env.step([1, 1, 1])
+    results = env.step([2, 2, 2])[:2]
+    before = [each.tolist() for each in results]
+    del env
+    gc.collect()
+    begun(3).step([0, 0, 0])  # it may get the memory that is free now
+    assert [each.tolist() for each in results] == before
+
+
+def test_one_game_and_the_seeds_of_each_game():
+    env, other = pair(1, **LIVELY)
+    same(env.reset(seed=9)[0], other.reset(seed=9)[0])
+    play(env, other, 30)
+    env, other = pair(3)
+    seeds = [5, 2**60, 5]
+    found = env.reset(seed=seeds)[0]
+    same(found, other.reset(seed=seeds)[0])
+    play(env, other, 3)
+    assert [env.snapshot(world) for world in range(3)] == [other.snapshot(w) for w in range(3)]
+
+
+def test_wrappers_of_functions_get_tensors():
+    """Gymnasium's others want arrays, and say so in words of their own."""
+    vector = gym.wrappers.vector
+    env, other = (
+        vector.TransformReward(vector.TransformObservation(each, abs), lambda gained: gained / 4)
+        for each in pair(3, life_penalty=1.0, **LIVELY)
+    )
+    same(env.reset(seed=1)[0], other.reset(seed=1)[0])
+    play(env, other, 30)
 
 
 @pytest.mark.parametrize("copier", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])

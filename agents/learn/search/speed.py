@@ -10,6 +10,7 @@ from ...experiment.worlds import make_worlds
 from ...measure.episodes import adapt
 from ..levels.sampling import make_stages
 from ..model import make_model
+from ..playing import worlds_device
 
 _ENDLESS = 10**15  # decisions
 
@@ -20,7 +21,8 @@ def measure_speed(experiment: Experiment, seconds: float) -> float:
     It trains for about ``seconds``, at least one rollout with its update, after another one in
     which everything is loaded. Nothing is kept of it.
     """
-    venv = adapt(make_worlds(experiment, experiment.training.worlds))
+    device = worlds_device(experiment)
+    venv = adapt(make_worlds(experiment, experiment.training.worlds, device=device))
     try:
         model = make_model(experiment, venv)
         model.set_logger(Logger(None, []))

@@ -21,7 +21,7 @@ class CudaKernels:
     """
 
     def __init__(self, entries: Sequence[Entry], card: int) -> None:
-        self._core = _cuda_core()
+        self._core = cuda_core()
         ptx = make_ptx(entries)
         try:
             self._core.Device(card).set_current()
@@ -57,8 +57,11 @@ class CudaKernels:
 
 
 @cache
-def _cuda_core() -> Any:
-    """Return the package, from where it lies in its versions."""
+def cuda_core() -> Any:
+    """Return the package.
+
+    Raises ImportError if it is missing.
+    """
     try:
         import cuda.core as core  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ImportError as error:

@@ -243,7 +243,7 @@ def test_the_rebuilt_network_plays_as_the_unpickled_one(
     assert not received.run.trusted
     observations, _ = worlds.reset(seed=1)
     everyone = np.arange(16)
-    ours, theirs = rebuilt._model, unpickled._model  # type: ignore[attr-defined]
+    ours, theirs = rebuilt._network, unpickled._network  # type: ignore[attr-defined]
     for _ in range(20):
         actions = unpickled(observations, everyone)
         np.testing.assert_array_equal(rebuilt(observations, everyone), actions)

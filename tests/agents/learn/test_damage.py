@@ -255,7 +255,9 @@ def test_damaged_weights_are_named_or_are_the_same(run: RunFolder, tmp_path: Pat
 def test_a_damaged_model_is_named_or_plays_the_same(run: RunFolder) -> None:
     content, experiment = run.model.read_bytes(), run.experiment()
     refused = 0
-    expected = weights_hash(load_policy(ModelFile(run, run.model), experiment)._model.state_dict())  # type: ignore[attr-defined]
+    expected = weights_hash(
+        load_policy(ModelFile(run, run.model), experiment)._network.state_dict()
+    )  # type: ignore[attr-defined]
     for number in range(200):
         run.model.write_bytes(damage(content, number))
         try:
@@ -264,7 +266,7 @@ def test_a_damaged_model_is_named_or_plays_the_same(run: RunFolder) -> None:
             assert str(run.model) in str(error)  # noqa: PT017
             refused += 1
         else:
-            assert weights_hash(policy._model.state_dict()) == expected
+            assert weights_hash(policy._network.state_dict()) == expected
     assert refused > 100
 
 

@@ -10,7 +10,8 @@ from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Experiment, load_experiment
 from arkanoid.agents.experiment.worlds import make_worlds
-from arkanoid.agents.learn.model import find_device, load_policy, make_model
+from arkanoid.agents.learn.model import load_policy, make_model
+from arkanoid.agents.learn.playing import find_device
 from arkanoid.agents.learn.ppo import FastPPO
 from arkanoid.agents.learn.training import train
 from arkanoid.agents.measure.episodes import adapt

@@ -1,6 +1,7 @@
 """Rollouts and updates on a device, here this processor, against stable-baselines3's own."""
 
 import json
+from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -11,13 +12,18 @@ import pytest
 import torch
 from arkanoid.agents import cli
 from arkanoid.agents.adapter import GymnasiumVecEnv
+from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import RunFolder
-from arkanoid.agents.experiment.settings import load_experiment
-from arkanoid.agents.learn import training
+from arkanoid.agents.experiment.settings import Experiment, load_experiment
+from arkanoid.agents.experiment.worlds import make_worlds
+from arkanoid.agents.learn import playing, training
 from arkanoid.agents.learn.curves import read_curve
-from arkanoid.agents.learn.model import worlds_device
+from arkanoid.agents.learn.model import make_model
+from arkanoid.agents.learn.playing import device_beside, find_device, worlds_device
 from arkanoid.agents.learn.ppo import FastPPO
+from arkanoid.agents.learn.search import speed
 from arkanoid.agents.tensor_adapter import TensorVecEnv
+from arkanoid.envs import tensor_vector_env
 from helpers.runs import SMALL, small
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
@@ -196,13 +202,83 @@ def test_a_training_on_a_device_resumes_bit_for_bit(tmp_path: Path) -> None:
     assert curves[0] == curves[1]
 
 
-def test_worlds_are_on_a_card_where_the_trainer_can_use_them(
+def test_a_search_measures_the_speed_of_games_where_they_will_be_played(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
+    """It measured a training with games on the processor."""
+    envs: list[Any] = []
+
+    def make(experiment: Experiment, env: Any) -> PPO:
+        envs.append(env)
+        return make_model(experiment, env)
+
+    monkeypatch.setattr(speed, "worlds_device", lambda experiment: "cpu")
+    monkeypatch.setattr(speed, "make_model", make)
+    assert speed.measure_speed(small(tmp_path), 0.01) > 0
+    assert isinstance(envs[0], TensorVecEnv)
+
+
+@pytest.fixture
+def card(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, int], None]:
+    """Pretend that there is a card with all that games need; return what sets its capability."""
+
+    def has_capability(*capability: int) -> None:
+        monkeypatch.setattr(torch.cuda, "get_device_capability", lambda device: capability)
+
+    monkeypatch.setattr(torch.version, "cuda", "13.0")
     monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 1)
+    monkeypatch.setattr(torch.cuda, "get_device_name", lambda device: "Tesla T4")
+    monkeypatch.setattr(tensor_vector_env, "cuda_core", lambda: None)
+    playing._tell.cache_clear()
+    has_capability(9, 0)
+    return has_capability
+
+
+@pytest.mark.usefixtures("card")
+def test_worlds_are_on_a_card_where_the_trainer_can_use_them(tmp_path: Path) -> None:
     assert worlds_device(small(tmp_path)) is None
     assert worlds_device(small(tmp_path, **{"training.device": "auto"})) == "cuda"
     for key, value in (("training.trainer", "sb3"), ("curriculum.sampling", "value_loss")):
         there = {"training.device": "cuda", key: value}
-        assert worlds_device(small(tmp_path, **there)) is None, key
+        experiment = small(tmp_path, **there)
+        assert worlds_device(experiment) is None, key
+        assert device_beside(find_device("cuda")) == "cuda", key
     assert load_experiment("quick", []).training.device == "cpu"
+
+
+def test_a_card_that_can_only_compute_leaves_the_games_to_the_processor(
+    card: Callable[[int, int], None],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A training whose network could be on such a card was refused."""
+    experiment = small(tmp_path, **{"training.device": "cuda"})
+    card(7, 5)
+    assert [worlds_device(experiment) for _ in range(3)] == [None] * 3
+    assert capsys.readouterr().err.splitlines() == [
+        "arkanoid: the games are played by the processor: Tesla T4 is too old: the game's kernels "
+        "need compute capability 8.0 (Ampere, 2020)"
+    ]
+    card(8, 0)
+
+    def missing() -> None:
+        raise ImportError('pip install "arkanoid[gpu]" brings it')
+
+    monkeypatch.setattr(tensor_vector_env, "cuda_core", missing)
+    assert worlds_device(experiment) is None
+    assert 'pip install "arkanoid[gpu]"' in capsys.readouterr().err
+
+
+def test_a_driver_that_refuses_is_no_mistake_in_the_table_of_the_environment(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The message was that the environment refuses the [env] table."""
+
+    def refuse(*arguments: Any, **keywords: Any) -> None:
+        raise RuntimeError("the graphics card 0 refuses the game's kernels")
+
+    monkeypatch.setattr(tensor_vector_env.ArkanoidTensorVectorEnv, "__init__", refuse)
+    with pytest.raises(SettingsError, match=r"^no games on cpu: the graphics card 0 refuses"):
+        make_worlds(small(tmp_path), 2, device="cpu")

@@ -6,6 +6,7 @@ import arkanoid  # noqa: F401
 import numpy as np
 import pytest
 import torch
+from arkanoid.envs import tensor_vector_env
 from arkanoid.envs.batch.batch import Batch
 from arkanoid.envs.config import Config
 from arkanoid.envs.tensor_vector_env import ArkanoidTensorVectorEnv, read_device
@@ -105,6 +106,7 @@ def card(monkeypatch):
     monkeypatch.setattr(torch.cuda, "device_count", lambda: 1)
     monkeypatch.setattr(torch.cuda, "current_device", lambda: 0)
     monkeypatch.setattr(torch.cuda, "get_device_name", lambda device: "Tesla T4")
+    monkeypatch.setattr(tensor_vector_env, "cuda_core", lambda: None)
 
     def set_capability(*capability):
         monkeypatch.setattr(torch.cuda, "get_device_capability", lambda device: capability)
@@ -127,13 +129,27 @@ def test_a_torch_without_cuda(monkeypatch):
 
 def test_no_card(card, monkeypatch):
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    with pytest.raises(RuntimeError, match=r"finds no NVIDIA card, or no driver.*without device"):
+    with pytest.raises(
+        RuntimeError,
+        match=r"no NVIDIA card, or no driver that is new enough for CUDA 13\.0 .*without device",
+    ):
         make("cuda", 1)
 
 
 def test_no_such_card(card):
     with pytest.raises(RuntimeError, match="'cuda:1': there is 1 card, number 0"):
         make("cuda:1", 1)
+
+
+def test_without_the_package_for_cards(card, monkeypatch):
+    """It was missed only after the kernels had been compiled, for half a minute."""
+
+    def missing():
+        raise ImportError('pip install "arkanoid[gpu]" brings it')
+
+    monkeypatch.setattr(tensor_vector_env, "cuda_core", missing)
+    with pytest.raises(ImportError, match=r'pip install "arkanoid\[gpu\]"'):
+        make("cuda", 1)
 
 
 def test_an_old_card(card):

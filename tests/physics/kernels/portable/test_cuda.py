@@ -41,7 +41,7 @@ def card(monkeypatch):
 
     def make(error=None):
         core = Core(error)
-        monkeypatch.setattr(cuda, "_cuda_core", lambda: core)
+        monkeypatch.setattr(cuda, "cuda_core", lambda: core)
         return core, cuda.CudaKernels([ENTRY], 1)
 
     return make
@@ -73,7 +73,7 @@ def test_without_the_package(monkeypatch):
             raise ImportError(name)
         return plain(name, *arguments)
 
-    cuda._cuda_core.cache_clear()
+    cuda.cuda_core.cache_clear()
     monkeypatch.setattr(builtins, "__import__", refuse)
     with pytest.raises(ImportError, match=r'cuda-core: pip install "arkanoid\[gpu\]"'):
         cuda.CudaKernels([ENTRY], 0)
