@@ -288,10 +288,7 @@ class ModelFile:
             run = RunFolder.of(str(path), trusted)
             path = run.best if run.best.is_file() else run.model
             if not path.is_file():
-                raise SettingsError(
-                    f"{name}: no trained model there: the training has not ended; to follow it: "
-                    f"{arkanoid('watch', path, '--web')}"
-                )
+                raise SettingsError(_without_model(name, path))
         elif not path.is_file():
             raise SettingsError(
                 f"{name}: there is no such file or folder; give the folder of a run, a model's "
@@ -341,6 +338,15 @@ class ModelFile:
             "seed": self.run.experiment().seed,
             "inputs": self.run.experiment().inputs,
         }
+
+
+def _without_model(name: str | None, folder: Path) -> str:
+    from ...envs.browser.shipped import offers_module
+
+    fact = f"{name}: no trained model there: the training has not ended"
+    return (
+        f"{fact}; to follow it: {arkanoid('watch', folder, '--web')}" if offers_module() else fact
+    )
 
 
 def _refused(path: Path, name: str, own: Any, hint: str) -> SettingsError:

@@ -16,6 +16,7 @@ from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Experiment
 from arkanoid.agents.learn.portable import portable_network
 from arkanoid.agents.learn.training import train
+from arkanoid.envs.browser import shipped
 from filelock import FileLock
 from helpers.runs import sentence, small
 
@@ -212,6 +213,19 @@ def test_one_file_of_a_run_without_an_agent_is_refused(
     error = sentence(["web", "--model", str(run.path), "--out", str(page)], capsys)
     assert "stopped before its first checkpoint" in error
     assert not page.exists()
+
+
+def test_a_page_is_offered_only_where_there_can_be_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a linker, the command that was named for a run without a model failed."""
+    run = RunFolder.create(small(tmp_path))
+    for offers in (True, False):
+        monkeypatch.setattr(shipped, "offers_module", lambda offers=offers: offers)
+        for command in ("evaluate", "watch"):
+            error = sentence([command, str(run.path)], capsys)
+            assert "the training has not ended" in error
+            assert ("--web" in error) == offers
 
 
 def test_a_run_that_no_browser_can_play_is_refused(
