@@ -1,10 +1,12 @@
 """The command line where something usual is missing: letters, a home directory."""
 
+import sys
 from pathlib import Path
 
 import platformdirs
 import pytest
 from arkanoid.agents import cli
+from arkanoid.envs.play.gallery import list_levels
 from helpers.processes import run_arkanoid
 
 
@@ -36,3 +38,19 @@ def test_commands_work_for_a_user_without_a_home(
     with pytest.raises(SystemExit):
         cli.main(["play", "--help"])
     assert "replays" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("columns", [40, 80, 200])
+def test_levels_fit_the_terminal(
+    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The list's lines had up to 123 letters, and a level needs 44 columns."""
+    for name, value in {"COLUMNS": str(columns), "TERM": "xterm", "NO_COLOR": ""}.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert cli.main(["levels"]) == 0
+    shown = capsys.readouterr().out.partition("\n\n")[0]
+    assert max(map(len, shown.splitlines())) <= columns
+    assert shown.split() == list_levels().split()
+    assert cli.main(["levels", "spiral"]) == 0
+    assert ("▀" in capsys.readouterr().out) == (columns >= 44)
