@@ -66,7 +66,8 @@ class RunFolder:
                 **describe_origin(), seed=experiment.seed, outcome=UNFINISHED, sessions=[]
             )
         except OSError as error:
-            raise SettingsError(f"'output' cannot be written to: {error}") from None
+            what = f"{error.filename or experiment.output}: {cause(error)}"
+            raise SettingsError(f"'output' cannot be written to: {what}") from None
         return run
 
     @classmethod
@@ -344,9 +345,8 @@ def _without_model(name: str | None, folder: Path) -> str:
     from ...envs.browser.shipped import offers_module
 
     fact = f"{name}: no trained model there: the training has not ended"
-    return (
-        f"{fact}; to follow it: {arkanoid('watch', folder, '--web')}" if offers_module() else fact
-    )
+    page = arkanoid("watch", folder, "--web")
+    return f"{fact}; to follow it: {page}" if offers_module() else fact
 
 
 def _refused(path: Path, name: str, own: Any, hint: str) -> SettingsError:

@@ -1,11 +1,15 @@
 """The command line where something usual is missing: letters, a home directory."""
 
+import os
+import re
 import sys
 from pathlib import Path
 
 import platformdirs
 import pytest
 from arkanoid.agents import cli
+from arkanoid.agents.experiment.errors import SettingsError
+from arkanoid.agents.experiment.files import check_folder
 from arkanoid.envs.play.gallery import list_levels
 from helpers.processes import run_arkanoid
 
@@ -54,3 +58,13 @@ def test_levels_fit_the_terminal(
     assert shown.split() == list_levels().split()
     assert cli.main(["levels", "spiral"]) == 0
     assert ("▀" in capsys.readouterr().out) == (columns >= 44)
+
+
+def test_the_folder_that_one_is_in_has_a_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The sentence began with a full stop: ".: you may not write into this folder"."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(SettingsError, match=f"^{re.escape(str(tmp_path))}: you may not write"):
+        check_folder(Path("game.gif"))
