@@ -289,7 +289,7 @@ class ModelFile:
             run = RunFolder.of(str(path), trusted)
             path = run.best if run.best.is_file() else run.model
             if not path.is_file():
-                raise SettingsError(_without_model(name, path))
+                raise SettingsError(_without_model(name, run.path))
         elif not path.is_file():
             raise SettingsError(
                 f"{name}: there is no such file or folder; give the folder of a run, a model's "

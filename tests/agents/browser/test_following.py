@@ -218,14 +218,17 @@ def test_one_file_of_a_run_without_an_agent_is_refused(
 def test_a_page_is_offered_only_where_there_can_be_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Without a linker, the command that was named for a run without a model failed."""
+    """For a run without a model, a command was named that failed: it followed a missing model.
+
+    Without a linker there is no page, and so no such command.
+    """
     run = RunFolder.create(small(tmp_path))
     for offers in (True, False):
         monkeypatch.setattr(shipped, "offers_module", lambda offers=offers: offers)
         for command in ("evaluate", "watch"):
             error = sentence([command, str(run.path)], capsys)
             assert "the training has not ended" in error
-            assert ("--web" in error) == offers
+            assert (f"watch {run.path} --web" in error) == ("--web" in error) == offers
 
 
 def test_a_run_that_no_browser_can_play_is_refused(
