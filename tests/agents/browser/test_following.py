@@ -231,6 +231,18 @@ def test_a_page_is_offered_only_where_there_can_be_one(
             assert (f"watch {run.path} --web" in error) == ("--web" in error) == offers
 
 
+def test_an_ended_run_whose_model_is_missing(
+    run: RunFolder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The sentence named a page to follow it, whose command ended with the same sentence."""
+    for model in (run.best, run.model):
+        model.unlink(missing_ok=True)
+    for command in (["evaluate", str(run.path)], ["watch", str(run.path), "--web", "--no-open"]):
+        error = sentence(command, capsys)
+        assert "model.zip is missing" in error
+        assert "--web" not in error
+
+
 def test_a_run_that_no_browser_can_play_is_refused(
     run: RunFolder, capsys: pytest.CaptureFixture[str]
 ) -> None:
