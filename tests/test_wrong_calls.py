@@ -151,6 +151,9 @@ BLIND = {
     "play --lite --level mine.txt": "--level mine.txt",
     "watch RUN": "arkanoid film RUN game.gif",
     "watch RUN --level seed:3": "film RUN game.gif --level seed:3",
+    "play --level spirol": "Did you mean 'spiral'?",
+    "play --lives 0": "lives must be between",
+    "watch --level spirol": "Did you mean 'spiral'?",
     "watch": "no display",
     "watch lite": "arkanoid watch lite --web --no-open",
 }

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
+from ..experiment.files import cause
 from .arguments import LEVEL, PLAYED, add_model, check_settings, positive
 
 
@@ -47,7 +48,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     try:
         film_policy(experiment, load_policy(model, experiment), out, start, arguments.seconds)
     except OSError as error:
-        raise SettingsError(f"{out}: cannot be written: {error}") from None
+        raise SettingsError(f"{out}: cannot be written: {cause(error)}") from None
     print(out)
     return 0
 

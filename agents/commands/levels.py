@@ -3,15 +3,18 @@
 import argparse
 import os
 import sys
+import textwrap
 from pathlib import Path
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
 from ..experiment.files import check_picture, level_mistake
 from ..experiment.programs import arkanoid
-from .arguments import LEVELS, NAMED, check_difficulty, number
+from .arguments import LEVELS, NAMED, check_difficulty, number, output_width
 
 _MOST = 100  # levels that are shown at once
+_WIDTH = 44  # of a level in colours
+_LEAST = 30  # letters in a line that make a column of comments readable
 
 _EPILOG = """\
   arkanoid levels                           lists the named levels
@@ -21,7 +24,8 @@ _EPILOG = """\
   arkanoid levels mine.txt --png mine.png   draws your own as a picture
   arkanoid play --level mine.txt            and plays it
 
-A terminal with colours shows a level in them; elsewhere the level's file is printed."""
+A terminal with colours, and with 44 columns, shows a level in them; elsewhere the level's file is
+printed."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +62,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         elif arguments.levels:
             _print(each, difficulty)
         else:
-            print(list_levels())
+            print(_folded(list_levels()) if sys.stdout.isatty() else list_levels())
             print(f"\nto draw one: {arkanoid('levels spiral')}")
             print(f"a generated one: {arkanoid('levels seed:7')}")
     except OSError as error:
@@ -66,6 +70,24 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     except ValueError as error:
         raise SettingsError(level_mistake("", error)) from None
     return 0
+
+
+def _folded(table: str) -> str:
+    """Return a table whose last column, which has no heading, fits the terminal."""
+    width = output_width()
+    heading, *rows = table.splitlines()
+    place = len(heading) + 2
+    lines = [heading]
+    for row in rows:
+        if width - place >= _LEAST:
+            folded = textwrap.wrap(row[place:], width - place) or [""]
+            lines.append(row[:place] + f"\n{' ' * place}".join(folded))
+        else:
+            lines += [
+                row[:place].rstrip(),
+                textwrap.indent(textwrap.fill(row[place:], width - 2), "  "),
+            ]
+    return "\n".join(lines)
 
 
 def _each(names: list[str]) -> list[str]:
@@ -100,7 +122,7 @@ def _print(names: list[str], difficulty: float) -> None:
 
     levels = [load_or_generate(name, difficulty) for name in names]
     colours = terminal_colours(sys.stdout, os.environ)
-    if colours == NO_COLOURS:
+    if colours == NO_COLOURS or output_width() < _WIDTH:
         print("\n\n".join(map(level_text, levels)))
     else:
         print("\n\n".join(level_in_colours(level, colours) for level in levels))

@@ -20,6 +20,7 @@ from .screen import require_screen
 
 if TYPE_CHECKING:
     from ...envs.batch.replays import Replay
+    from ...envs.config import Config
 
 _EPILOG = """\
 keys:
@@ -70,31 +71,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     """Play until the window is closed; return the exit status (130 after Ctrl-C)."""
     level = None if arguments.level == NAMED else arguments.level
-    film = arkanoid("film", "game.gif", *([] if level is None else ["--level", quoted(level)]))
-    require_screen(f"a film of an agent in the package needs none: {film}")
-    # The game imports Numba, which is slow.
-    from ...envs.levels import CAMPAIGN
-    from ...envs.play.by_hand import hand_config, play_by_hand
-
-    keywords: dict[str, Any] = dict(gym.spec("ArkanoidLite-v0").kwargs) if arguments.lite else {}
-    keywords.pop("actions", None)  # a person has the fire button, here too
-    for name in ("speed", "lives"):
-        if getattr(arguments, name) is not None:
-            keywords[name] = getattr(arguments, name)
-    seed = secrets.randbits(62) if arguments.seed is None else arguments.seed
-    save = _Saver(arguments.save)
     try:
-        # After the campaign come generated levels.
-        in_campaign = level is None or level in CAMPAIGN
-        if arguments.difficulty is not None and not in_campaign:
-            check_difficulty([str(level)])
-        config, options = hand_config(level, arguments.difficulty, **keywords)
+        # A level that is wrong must not be part of the command that works without a screen.
+        config, options = _game(level, arguments)
+        film = arkanoid("film", "game.gif", *([] if level is None else ["--level", quoted(level)]))
+        require_screen(f"a film of an agent in the package needs none: {film}")
+        from ...envs.play.by_hand import play_by_hand
+
+        seed = secrets.randbits(62) if arguments.seed is None else arguments.seed
+        save = _Saver(arguments.save)
         interrupted = play_by_hand(config, options, seed, save, save.scores)
     except OSError as error:
         raise SettingsError(f"{error.filename}: {error.strerror}") from None
     except ValueError as error:
         raise SettingsError(level_mistake("", error)) from None
     return 130 if interrupted else 0
+
+
+def _game(level: str | None, arguments: argparse.Namespace) -> "tuple[Config, dict[str, Any]]":
+    """Return the configuration of the games and how they begin.
+
+    Raises OSError or ValueError for a level that there is not, or a value that is illegal.
+    """
+    # The game imports Numba, which is slow.
+    from ...envs.levels import CAMPAIGN
+    from ...envs.levels.plan import plan_levels
+    from ...envs.play.by_hand import hand_config
+
+    keywords: dict[str, Any] = dict(gym.spec("ArkanoidLite-v0").kwargs) if arguments.lite else {}
+    keywords.pop("actions", None)  # a person has the fire button, here too
+    for name in ("speed", "lives"):
+        if getattr(arguments, name) is not None:
+            keywords[name] = getattr(arguments, name)
+    # After the campaign come generated levels.
+    in_campaign = level is None or level in CAMPAIGN
+    if arguments.difficulty is not None and not in_campaign:
+        check_difficulty([str(level)])
+    config, options = hand_config(level, arguments.difficulty, **keywords)
+    plan_levels(config)
+    return config, options
 
 
 class _Saver:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..experiment.errors import SettingsError
-from ..experiment.files import check_folder
+from ..experiment.files import cause, check_folder
 from ..experiment.programs import arkanoid
 from .arguments import MEASURED, add_trust, check_settings
 from .evaluate import group_by_experiment
@@ -51,6 +51,6 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     try:
         write_page(out, facts, pictures, alive)
     except OSError as error:
-        raise SettingsError(f"{out}: cannot be written: {error}") from None
+        raise SettingsError(f"{out}: cannot be written: {cause(error)}") from None
     print(out)
     return 0

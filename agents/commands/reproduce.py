@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
         return outcome if last <= step < experiment.training.timesteps else None
 
     if train(experiment, again, on_measure=stop_there) == INTERRUPTED:
+        print(f"stopped before there was anything to compare; nothing needs {again.path}")
         return 130
     notes = again.read_notes()
     print(f"weights there  {printable(expected)}\nweights here   {notes['weights']}")

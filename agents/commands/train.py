@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
-from ..experiment.files import check_new_folder
+from ..experiment.files import cause, check_new_folder
 from ..experiment.packaged import packaged_configs
 from ..experiment.programs import arkanoid, command
 from .arguments import add_trust, help_width, output_width
@@ -179,7 +179,9 @@ def _show(experiment: "Experiment", folder: "RunFolder", tracking: "Tracking") -
         _note("filming a game")
         film_policy(experiment, policy, folder.film)
     except OSError as error:
-        raise SettingsError(f"{folder.path}: the results cannot be written: {error}") from None
+        raise SettingsError(
+            f"{folder.path}: the results cannot be written: {cause(error)}"
+        ) from None
     tracking.keep(results, model.path)
     print(f"\n{as_tables(experiment, comparison, output_width())}\n")
     print(f"model    {model.path}\nfilm     {folder.film}")

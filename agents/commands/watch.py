@@ -51,11 +51,12 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     experiment = model.experiment(overrides)
     named = [Path(arguments.model)] if arguments.model else []
     level = ["--level", quoted(arguments.level)] if arguments.level else []
-    require_screen(_without_screen(named, level))
-    from ...envs.play.show import run_show
     from ..measure.suites import WHOLE_GAMES, find_starts
 
+    # A level that is wrong must not be part of the command that works without a screen.
     starts = find_starts(experiment, arguments.level) if arguments.level else (WHOLE_GAMES,)
+    require_screen(_without_screen(named, level))
+    from ...envs.play.show import run_show
     from ..learn.model import load_policy
     from ..show.frames import Frame
     from ..show.watching import WATCH_KEYS, Watching

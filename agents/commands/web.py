@@ -15,6 +15,7 @@ from ...envs.atomic import write_atomically
 from ..experiment.errors import SettingsError
 from ..experiment.files import cause, check_folder
 from ..experiment.packaged import packaged_agents
+from ..experiment.programs import command
 from .arguments import add_trust, whole
 
 if TYPE_CHECKING:
@@ -144,6 +145,7 @@ def make(wanted: Wanted | None, served: bool) -> "tuple[str, FollowedRun | None]
     Raises `SettingsError` for what is wrong with the agent, and where the game can't be made for
     browsers.
     """
+    _check_module()
     agents: list[BrowserAgent] = []
     run, asked = None, None
     if wanted is not None:
@@ -160,6 +162,18 @@ def make(wanted: Wanted | None, served: bool) -> "tuple[str, FollowedRun | None]
         return make_page(agents, "watch" if wanted else "play", shown, asked), run
     except ImportError as error:  # of the linker
         raise SettingsError(str(error)) from None
+
+
+def _check_module() -> None:
+    """Raise `SettingsError` where the game can't be made for browsers, before it is compiled."""
+    from ...envs.browser.shipped import offers_module
+
+    if not offers_module():
+        install = f'{command("pip", "install", "-e")} ".[web]"'
+        raise SettingsError(
+            f"to make the page needs the linker wasm-ld: run `{install}` in arkanoid's repository, "
+            f"or install Debian's package lld"
+        )
 
 
 def _find(

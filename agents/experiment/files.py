@@ -40,7 +40,8 @@ def check_folder(file: Path) -> None:
     if file.is_dir():
         raise SettingsError(f"{file}: that is a folder; give the name of a file in it")
     if not os.access(folder, os.W_OK):
-        raise SettingsError(f"{folder}: you may not write into this folder; name another one")
+        named = Path.cwd() if folder == Path() else folder
+        raise SettingsError(f"{named}: you may not write into this folder; name another one")
 
 
 def check_new_folder(folder: Path) -> None:

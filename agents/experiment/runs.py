@@ -66,7 +66,8 @@ class RunFolder:
                 **describe_origin(), seed=experiment.seed, outcome=UNFINISHED, sessions=[]
             )
         except OSError as error:
-            raise SettingsError(f"'output' cannot be written to: {error}") from None
+            what = f"{error.filename or experiment.output}: {cause(error)}"
+            raise SettingsError(f"'output' cannot be written to: {what}") from None
         return run
 
     @classmethod
@@ -75,8 +76,7 @@ class RunFolder:
         run = cls(Path(folder), trusted)
         if not run.config.is_file():
             raise SettingsError(
-                f"{folder}: no training run there; give the folder of a run, which holds "
-                f"{run.config.name}"
+                f"{folder}: no run there; give the folder of a run, which holds {run.config.name}"
             )
         return run
 
@@ -288,10 +288,7 @@ class ModelFile:
             run = RunFolder.of(str(path), trusted)
             path = run.best if run.best.is_file() else run.model
             if not path.is_file():
-                raise SettingsError(
-                    f"{name}: no trained model there: the training has not ended; to follow it: "
-                    f"{arkanoid('watch', path, '--web')}"
-                )
+                raise SettingsError(_without_model(name, run))
         elif not path.is_file():
             raise SettingsError(
                 f"{name}: there is no such file or folder; give the folder of a run, a model's "
@@ -341,6 +338,16 @@ class ModelFile:
             "seed": self.run.experiment().seed,
             "inputs": self.run.experiment().inputs,
         }
+
+
+def _without_model(name: str | None, run: RunFolder) -> str:
+    from ...envs.browser.shipped import offers_module
+
+    fact = f"{name}: no trained model there"
+    if run.read_notes().get("outcome", UNFINISHED) != UNFINISHED:
+        return f"{fact}: {run.model.name} is missing; replace it with a copy, or train again"
+    page = f"; to follow it: {arkanoid('watch', run.path, '--web')}" if offers_module() else ""
+    return f"{fact}: the training has not ended{page}"
 
 
 def _refused(path: Path, name: str, own: Any, hint: str) -> SettingsError:

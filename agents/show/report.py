@@ -76,6 +76,10 @@ def show_alive(model: ModelFile, overrides: list[tuple[str, str]]) -> str:
 
     It is of agents whose network has a kernel, and where the game can be made for browsers.
     """
+    from ...envs.browser.shipped import offers_module
+
+    if not offers_module():
+        return ""
     try:
         return make_page([browser_agent(model, model.run.experiment(overrides))], opens="watch")
     except (SettingsError, ImportError):

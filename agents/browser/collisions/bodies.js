@@ -5,11 +5,12 @@ const PARTS = {
   collider: "Particle", x: 0, y: 0, vx: 0, vy: 0, width: 1, height: 1, turn: 0, mass: 1,
   restitution: 1, polygon: "pentagon", open: "",
 };
-/** What a number may be. */
+/** What a number may be; a mass may be 0, too, but not so small that its inverse is infinite. */
 export const LIMITS = {
   x: [-100, 100], y: [-100, 100], vx: [-100, 100], vy: [-100, 100], width: [0.1, 4],
-  height: [0.1, 4], turn: [0, 359], mass: [0, 1000], restitution: [0, 1],
+  height: [0.1, 4], turn: [0, 359], mass: [1e-3, 1e3], restitution: [0, 1],
 };
+const WHOLE = ["turn", "sensor"];
 export const COLLIDERS = [
   "Particle", "HalfPlane", "AxisAlignedHalfPlane", "AxisAlignedRectangle", "Rectangle", "Convex",
 ];
@@ -20,7 +21,7 @@ export function readBody(text) {
   const words = text.split(",");
   const body = {};
   Object.entries(PARTS).forEach(([name, usual], index) => {
-    body[name] = words[index] ? readPart(words[index], usual, LIMITS[name], name === "turn") : usual;
+    body[name] = words[index] ? readPart(name, words[index], usual, LIMITS[name]) : usual;
   });
   if (!COLLIDERS.includes(body.collider)) body.collider = PARTS.collider;
   if (!Object.hasOwn(EDGES, body.polygon)) body.polygon = PARTS.polygon;
@@ -31,12 +32,13 @@ export function readBody(text) {
 }
 
 /** @returns {string | number} a word, as a number within its limits if it is one usually */
-export function readPart(word, usual, limits, isWhole) {
+export function readPart(name, word, usual, limits) {
   if (typeof usual === "string") return word;
   const number = Number(word);
   if (!Number.isFinite(number)) return usual;
+  if (name === "mass" && number === 0) return 0; // none
   const [low, high] = limits;
-  return Math.max(low, Math.min(high, isWhole ? Math.round(number) : number));
+  return Math.max(low, Math.min(high, WHOLE.includes(name) ? Math.round(number) : number));
 }
 
 /** @returns {object} the bodies that an address holds: a, b, both or none */

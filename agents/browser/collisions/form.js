@@ -124,8 +124,7 @@ export class Form {
     } else {
       const number = field.valueAsNumber;
       const [low, high] = LIMITS[name];
-      // Who types 0.5 begins with 0; for none there is a box.
-      if (name === "mass" && number === 0) return;
+      // Who types a mass of 0.5 begins with 0, which is none; for that there is a box.
       if (number >= low && number <= high) this._change({ [name]: number });
     }
   }

@@ -4,6 +4,7 @@ const WIDTH = 24.9; // units that are shown, about the origin: a room of 24 x 16
 const HEIGHT = 16.6;
 const LASTS = 0.5; // seconds that a hit is shown
 const MOST_HITS = 80; // that are shown at once
+const LAMP = 0.28; // radius
 const POINT = 0.06; // radius of a point as it is drawn
 export const AIM = 0.25; // length of an arrow for each unit of speed
 const TIP = 0.16; // radius of the knob at an arrow's end
@@ -50,9 +51,9 @@ export class Arena {
    * Draw a world.
    * @param {object[]} bodies as the world shows them
    * @param {Map<number, Path2D>} outlines of bodies, by handle
-   * @param {object} shown what else there is: chosen, arrows, lamp, rays, now
+   * @param {object} shown what else there is: chosen, arrows, lamp, isRinged, rays, now
    */
-  paint(bodies, outlines, { chosen, arrows, lamp, rays, now }) {
+  paint(bodies, outlines, { chosen, arrows, lamp, isRinged, rays, now }) {
     const context = this._context;
     this._fit();
     const colours = this._read();
@@ -73,14 +74,7 @@ export class Arena {
       }
     }
     this._paintHits(now, colours, line);
-    if (lamp) {
-      context.fillStyle = colours.lamp;
-      this._disc(...lamp, 0.28);
-      context.fill();
-      context.strokeStyle = colours.ink;
-      context.lineWidth = line;
-      context.stroke();
-    }
+    if (lamp) this._paintLamp(lamp, isRinged, colours, line);
   }
 
   /** Let the canvas have as many pixels as the screen. */
@@ -95,7 +89,7 @@ export class Arena {
     if (!this._colours) {
       const style = getComputedStyle(this.canvas);
       const names = { dynamic: "a", kinematic: "b", hit: "normal", sensor: "after", fixed: "soft",
-        ink: "ink", lamp: "lamp" };
+        ink: "ink", lamp: "lamp", ring: "accent" };
       const colour = ([name, variable]) => [name, style.getPropertyValue(`--${variable}`).trim()];
       this._colours = Object.fromEntries(Object.entries(names).map(colour));
     }
@@ -171,6 +165,21 @@ export class Arena {
     }
     context.stroke();
     context.globalAlpha = 1;
+  }
+
+  _paintLamp(lamp, isRinged, colours, line) {
+    const context = this._context;
+    context.fillStyle = colours.lamp;
+    this._disc(...lamp, LAMP);
+    context.fill();
+    context.strokeStyle = colours.ink;
+    context.lineWidth = line;
+    context.stroke();
+    if (!isRinged) return;
+    context.strokeStyle = colours.ring;
+    context.lineWidth = 2 * line; // 3 pixels, as around all else that has the focus
+    this._disc(...lamp, LAMP + 2.5 * line);
+    context.stroke();
   }
 
   _disc(x, y, radius) {

@@ -1,11 +1,13 @@
 // The hand in a world: pointer and keys that drag, fling, aim and throw in.
 
 import { AIM } from "arkanoid/arena";
+import { lampAt } from "arkanoid/lamp";
 
 const REACH = 10; // pixels about a pointer in which a body is taken
 const FASTEST = 60; // that a hand moves, in units of the world
 const STILL = 0.15; // units by which one must pull to throw
 const NUDGE = 0.1;
+const LEAP = 1;
 const KICK = 1;
 const REMEMBERED = 100; // milliseconds of a pointer's way that make a fling
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -91,6 +93,7 @@ export class Hand {
     this._held = {
       pointer: event.pointerId, what, handle, at: [x, y], from: [x, y], grip, trail,
     };
+    if (what === "lamp") world.spot.focus();
   }
 
   /** Find what is at a place: the lamp, a tip, a body, or room for what is thrown in. */
@@ -128,7 +131,7 @@ export class Hand {
     held.trail.push([...held.at, event.timeStamp]);
     while (event.timeStamp - held.trail[0][2] > REMEMBERED) held.trail.shift();
     const [x, y] = this._goal();
-    if (held.what === "lamp") world.lamp = [rounded(x), rounded(y)];
+    if (held.what === "lamp") world.lamp = lampAt(x, y);
     else if (held.what === "tip") this._aim(held.handle, held.at, held.grip);
     else if (held.what === "aim") this._throw(held);
     else if (!world.runs) {
@@ -158,7 +161,9 @@ export class Hand {
     this._held = undefined;
     if (held.what === "body" && world.runs) this._fling(held, event.timeStamp);
     const isMoved = held.at.join() !== held.from.join();
-    if (held.what === "body" && !isMoved && !world.runs) world.forgetLast();
+    // A body stops in the hand while time runs.
+    const isSame = !isMoved && held.what !== "aim" && !(held.what === "body" && world.runs);
+    if (isSame) world.forgetLast();
     else world.edited();
     world.choose(world.chosen);
   }
@@ -197,8 +202,8 @@ export class Hand {
       r: () => world.again(),
       n: () => this._next(event.shiftKey ? -1 : 1),
       i: () => this._insert(),
-      Delete: () => world.remove(),
-      Backspace: () => world.remove(),
+      Delete: () => this._remove(),
+      Backspace: () => this._remove(),
       Escape: () => world.choose(undefined),
     };
     const deed = deeds[key.length === 1 ? key.toLowerCase() : key];
@@ -209,8 +214,20 @@ export class Hand {
     return Object.hasOwn(ARROWS, key) && this._nudge(ARROWS[key], event);
   }
 
-  /** Move the chosen body, or kick it while time runs or with the shift key. */
+  /** Move what the keys are for: the lamp, or the chosen body. */
   _nudge([right, up], event) {
+    const { _world: world } = this;
+    if (!world.spot.isFocused) return this._nudgeBody([right, up], event);
+    const [x, y] = world.lamp;
+    const step = event.shiftKey ? LEAP : NUDGE;
+    if (!event.repeat) world.remember();
+    world.lamp = lampAt(x + step * right, y + step * up);
+    world.edited();
+    return true;
+  }
+
+  /** Move the chosen body, or kick it while time runs or with the shift key. */
+  _nudgeBody([right, up], event) {
     const { _world: world } = this;
     const thing = world.live.thing(world.chosen);
     if (!thing) return false;
@@ -225,9 +242,16 @@ export class Hand {
     return true;
   }
 
+  _remove() {
+    const { _world: world } = this;
+    if (world.spot.isFocused) world.light(null);
+    else world.remove();
+  }
+
   /** Choose the next body. */
   _next(by) {
     const { _world: world } = this;
+    world.focus();
     const handles = world.live.handles();
     if (handles.length === 0) return;
     const place = handles.indexOf(world.chosen);
@@ -239,6 +263,7 @@ export class Hand {
   /** Throw something into the middle, and choose it. */
   _insert() {
     const { _world: world } = this;
+    world.focus();
     const handle = world.throwIn(0, 0);
     if (handle === undefined) return;
     world.choose(handle);

@@ -23,6 +23,18 @@ export class Meters {
     this._shown = -Infinity;
   }
 
+  /** @returns {object} all that there is, for `restore` */
+  save() {
+    return { hits: this.hits, energies: [...this._energies], lines: [...this._lines] };
+  }
+
+  restore({ hits, energies, lines }) {
+    this.hits = hits;
+    this._energies = [...energies];
+    this._lines = [...lines];
+    this._shown = -Infinity;
+  }
+
   /** Take note of what happened in a step. */
   note(events, energy) {
     const { HIT, BEGIN } = this._kinds;

@@ -1,13 +1,13 @@
 // Things of a world in the address: #world?gravity=10&b=Particle,0,0,1,0&b=Rectangle,3,0,0,0,2,1,30
 
 import { readPart } from "arkanoid/bodies";
+import { readLamp } from "arkanoid/lamp";
 
-/** What a number may be. */
+/** What a number may be; a mass may be 0, too. */
 export const LIMITS = {
   x: [-1e9, 1e9], y: [-1e9, 1e9], vx: [-1e6, 1e6], vy: [-1e6, 1e6], width: [0, 100],
-  height: [0.1, 100], turn: [0, 359], mass: [0, 1e8], restitution: [0, 1], sensor: [0, 1],
+  height: [0.1, 100], turn: [0, 359], mass: [1e-8, 1e8], restitution: [0, 1], sensor: [0, 1],
 };
-const WHOLE = ["turn", "sensor"];
 const COLLIDERS = [
   "Particle", "AxisAlignedHalfPlane", "AxisAlignedRectangle", "Rectangle", "Convex",
 ];
@@ -48,7 +48,7 @@ export class Things {
     const thing = {};
     Object.entries(this.usual).forEach(([name, usual], index) => {
       const word = words[index];
-      thing[name] = word ? readPart(word, usual, LIMITS[name], WHOLE.includes(name)) : usual;
+      thing[name] = word ? readPart(name, word, usual, LIMITS[name]) : usual;
     });
     if (!COLLIDERS.includes(thing.collider)) thing.collider = this.usual.collider;
     if (!Object.hasOwn(this._polygons, thing.polygon)) thing.polygon = this.usual.polygon;
@@ -69,11 +69,10 @@ export class Things {
     const name = given.get("scene") ?? "";
     if (Object.hasOwn(this._scenes, name)) return this.ready(name);
     if (!given.has("b") && !given.has("gravity") && !given.has("lamp")) return undefined;
-    const numbers = (given.get("lamp") ?? "").split(",").map(Number);
     return {
       things: given.getAll("b").map((text) => this.read(text)),
-      gravity: readPart(given.get("gravity") ?? "", 0, [0, MOST_GRAVITY]),
-      lamp: numbers.length === 2 && numbers.every(Number.isFinite) ? numbers : null,
+      gravity: readPart("gravity", given.get("gravity") ?? "", 0, [0, MOST_GRAVITY]),
+      lamp: readLamp(given.get("lamp") ?? ""),
     };
   }
 

@@ -78,8 +78,7 @@ export class Tray {
       const number = field.valueAsNumber;
       const [low, high] = LIMITS[name];
       const isShape = ["width", "height", "turn"].includes(name);
-      // Who types 0.5 begins with 0; for none there is a box.
-      if (name === "mass" && number === 0) return;
+      // Who types a mass of 0.5 begins with 0, which is none; for that there is a box.
       if (number >= low && number <= high) this._take({ [name]: number }, isShape);
     }
   }

@@ -3,6 +3,7 @@
 import { Address } from "arkanoid/address";
 import { Arena } from "arkanoid/arena";
 import { Hand } from "arkanoid/hand";
+import { Lamp } from "arkanoid/lamp";
 import { Live } from "arkanoid/live_world";
 import { Meters } from "arkanoid/meters";
 import { pythonOf } from "arkanoid/python";
@@ -27,6 +28,7 @@ export class World {
     this._polygons = worlds.polygons;
     this.things = new Things(worlds);
     this.arena = new Arena();
+    this.spot = new Lamp();
     this.meters = new Meters(worlds.kinds);
     this.tray = new Tray(this.things.usual, {
       change: (changes, isShape) => this.change(changes, isShape),
@@ -34,6 +36,7 @@ export class World {
     this.hand = new Hand(this);
     this._address = new Address(() => this.things.writeScene(this._start));
     this.chosen = undefined;
+    this._undone = [];
     this.runs = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this._speed = SPEEDS.indexOf(1);
     this._listen();
@@ -48,8 +51,9 @@ export class World {
     this.live ??= new Live(sandbox);
     const scene = this.things.readScene(location.hash);
     if (scene) this.load(scene);
-    else if (this._start) this._address.now();
-    else this.load(this.things.ready(FIRST));
+    else if (!this._start) this.load(this.things.ready(FIRST));
+    // One comes back, or the address says what can't be.
+    this._address.now();
     this._due = 0;
     this._then = undefined;
     const picture = (now) => {
@@ -78,10 +82,10 @@ export class World {
     this.arena.canvas.focus({ preventScroll: true });
   }
 
-  /** Begin with a scene. */
+  /** Begin with a scene, from which one can go back to what was before. */
   load(scene) {
+    if (this._start) this.remember();
     this._start = scene;
-    this._undone = [];
     this._lay(scene);
   }
 
@@ -89,13 +93,12 @@ export class World {
     this.hand.drop();
     this.chosen = this._changed = undefined;
     this.gravity = scene.gravity;
-    this.lamp = scene.lamp && [...scene.lamp];
+    this.lamp = scene.lamp;
     this.meters.clear();
     this.arena.forget();
     if (!this.live.lay(scene.things)) this._tell("There is room for 1024 bodies only.");
     else this._tell("");
-    document.getElementById("gravity").value = this.gravity;
-    document.getElementById("lamp").checked = Boolean(this.lamp);
+    this._showSettings();
     this._shown = undefined;
     this._showChosen();
     this._showState();
@@ -105,9 +108,9 @@ export class World {
 
   /** Keep the world as it is, to come back to it. */
   remember() {
-    const { live, chosen, gravity, lamp, meters: { hits } } = this;
-    const kept = { world: live.save(), chosen, gravity, lamp: lamp && [...lamp], hits };
-    this._undone.push({ ...kept, start: this._start });
+    const { live, meters, chosen, gravity, lamp, _start: start } = this;
+    const kept = { world: live.save(), meters: meters.save(), chosen, gravity, lamp, start };
+    this._undone.push(kept);
     if (this._undone.length > MOST_UNDONE) this._undone.shift();
   }
 
@@ -125,9 +128,9 @@ export class World {
     Object.assign(this, { chosen: kept.chosen, gravity: kept.gravity, lamp: kept.lamp });
     this._changed = undefined;
     this._start = kept.start;
-    this.meters.hits = kept.hits;
-    document.getElementById("gravity").value = this.gravity;
-    document.getElementById("lamp").checked = Boolean(this.lamp);
+    this.meters.restore(kept.meters);
+    this.arena.forget();
+    this._showSettings();
     this._shown = undefined;
     this._tell("");
     this._showChosen();
@@ -168,6 +171,14 @@ export class World {
   _rememberOnce(what) {
     if (this._changed !== what) this.remember();
     this._changed = what;
+  }
+
+  /** Put the lamp somewhere; null: take it away. */
+  light(place) {
+    this.remember();
+    this.lamp = place;
+    this.edited();
+    this._showSettings();
   }
 
   remove() {
@@ -230,9 +241,11 @@ export class World {
     if (!this.live.has(this.chosen) && this.chosen !== undefined) this.choose(undefined);
     this.meters.show(record, bodies.length, now);
     if (this.chosen !== undefined) this._follow();
+    this._showLamp();
     const rays = this.lamp && this.live.cast(this.lamp);
     this.arena.paint(bodies, this.live.paths, {
-      chosen: this.chosen, arrows: !this.runs || this.hand.aims, lamp: this.lamp, rays, now,
+      chosen: this.chosen, arrows: !this.runs || this.hand.aims, lamp: this.lamp,
+      isRinged: this.spot.isRinged, rays, now,
     });
   }
 
@@ -267,6 +280,18 @@ export class World {
   }
 
   // What is shown.
+
+  _showSettings() {
+    document.getElementById("gravity").value = this.gravity;
+    document.getElementById("lamp").checked = Boolean(this.lamp);
+    this._showLamp();
+  }
+
+  _showLamp() {
+    // What is hidden can't keep the focus.
+    if (!this.lamp && this.spot.isFocused) this.focus();
+    this.spot.show(this.lamp);
+  }
 
   _showChosen() {
     const thing = this.live?.thing(this.chosen);
@@ -309,7 +334,7 @@ export class World {
   /** Return the scene as it is now. */
   _now() {
     const { gravity, lamp } = this;
-    return { things: this.live.things(), gravity, lamp: lamp && [...lamp] };
+    return { things: this.live.things(), gravity, lamp };
   }
 
   _button(name) {
@@ -349,9 +374,7 @@ export class World {
     // What can't be is put right when one goes on.
     gravity.onchange = () => { gravity.value = this.gravity; };
     document.getElementById("lamp").onchange = ({ target }) => {
-      this.remember();
-      this.lamp = target.checked ? [0, 0] : null;
-      this.edited();
+      this.light(target.checked ? [0, 0] : null);
     };
     document.getElementById("thing-other").onclick = () => this.choose(undefined);
     document.getElementById("world-python").ontoggle = () => this._showPython();

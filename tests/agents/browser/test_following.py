@@ -16,6 +16,7 @@ from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Experiment
 from arkanoid.agents.learn.portable import portable_network
 from arkanoid.agents.learn.training import train
+from arkanoid.envs.browser import shipped
 from filelock import FileLock
 from helpers.runs import sentence, small
 
@@ -212,6 +213,34 @@ def test_one_file_of_a_run_without_an_agent_is_refused(
     error = sentence(["web", "--model", str(run.path), "--out", str(page)], capsys)
     assert "stopped before its first checkpoint" in error
     assert not page.exists()
+
+
+def test_a_page_is_offered_only_where_there_can_be_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """For a run without a model, a command was named that failed: it followed a missing model.
+
+    Without a linker there is no page, and so no such command.
+    """
+    run = RunFolder.create(small(tmp_path))
+    for offers in (True, False):
+        monkeypatch.setattr(shipped, "offers_module", lambda offers=offers: offers)
+        for command in ("evaluate", "watch"):
+            error = sentence([command, str(run.path)], capsys)
+            assert "the training has not ended" in error
+            assert (f"watch {run.path} --web" in error) == ("--web" in error) == offers
+
+
+def test_an_ended_run_whose_model_is_missing(
+    run: RunFolder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The sentence named a page to follow it, whose command ended with the same sentence."""
+    for model in (run.best, run.model):
+        model.unlink(missing_ok=True)
+    for command in (["evaluate", str(run.path)], ["watch", str(run.path), "--web", "--no-open"]):
+        error = sentence(command, capsys)
+        assert "model.zip is missing" in error
+        assert "--web" not in error
 
 
 def test_a_run_that_no_browser_can_play_is_refused(

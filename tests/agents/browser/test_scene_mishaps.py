@@ -1,5 +1,6 @@
 """What went wrong in World and Collide: quick changes, second fingers, half-typed numbers."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -102,6 +103,67 @@ def test_a_link_right_after_a_change(world: Any) -> None:
     wait_until(world, "part._start.name === 'pile'")
     world.wait_for_timeout(400)
     assert world.evaluate("location.hash") == "#world?scene=pile"
+
+
+def test_a_link_to_a_scene_can_be_undone(world: Any) -> None:
+    """It took the world that one had built, and all that could be undone before."""
+    throw(world)
+    before = things(world)
+    hits = world.evaluate("arkanoid.part.meters.hits = 7")
+    for name in ("pile", "cradle"):
+        world.click(f"#world-scenes a[data-scene={name}]")
+        wait_until(world, f"part._start.name === '{name}'")
+    world.click("#world-undo")
+    assert world.locator("#world-scenes [aria-current]").text_content() == "A pile of crates"
+    wait_until(world, "location.hash === '#world?scene=pile'")
+    world.click("#world-undo")
+    assert things(world) == before
+    assert world.evaluate("arkanoid.part.meters.hits") == hits
+    assert world.locator("#gravity").input_value() == "5"
+    wait_until(world, "location.hash.split('&b=').length === 4")
+    world.click("#world-undo")
+    assert len(things(world)) == 2
+    assert world.locator("#world-undo").is_disabled()
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"),
+    [
+        *[("1e308,1e308", [12, 8]), ("-1e9,0.333", [-12, 0.33]), ("12.4,-9", [12, -8])],
+        *[(text, None) for text in ("1e400,0", "NaN,0", "0,-Infinity", "inf,0", ",", "1", "1,2,3")],
+    ],
+)
+def test_the_lamp_of_an_address(
+    browser: Any, file: Path, given: str, shown: list[float] | None
+) -> None:
+    """One far away was lit, but nowhere: it stays in the picture, or there is none."""
+    scene = f"#world?lamp={given}&gravity=1e99&b=Particle"
+    with visit(browser, file.as_uri() + scene, **DESKTOP) as page:
+        wait_until(page, "part.live?.sandbox.record.time > 0")
+        assert page.evaluate("arkanoid.part.lamp") == shown
+        assert page.is_checked("#lamp") == (shown is not None)
+        assert page.locator("#gravity").input_value() == "100"
+        lamp = f"&lamp={shown[0]:g},{shown[1]:g}" if shown else ""
+        assert page.evaluate("location.hash") == f"#world?gravity=100{lamp}&b=Particle"
+
+
+@pytest.mark.parametrize("number", ["1e308", "-1e308", "1e400", "NaN", "Infinity", "5e-324"])
+def test_bodies_with_such_numbers(browser: Any, file: Path, number: str) -> None:
+    """Each shows what can be: its fields hold numbers, and nothing on the page is NaN."""
+    numbers = ",".join([number] * 8)
+    kinds = ("Particle", "AxisAlignedRectangle", "Rectangle", "Convex", "AxisAlignedHalfPlane")
+    bodies = "&".join(f"b={kind},{numbers}" for kind in kinds)
+    with visit(browser, file.as_uri() + f"#world?{bodies}&b=Particle", **DESKTOP) as page:
+        wait_until(page, "part.live?.sandbox.record.time > 0.05 || !part.runs")
+        for row in range(len(things(page))):
+            page.evaluate(f"arkanoid.part.choose({row})")
+            page.wait_for_timeout(120)
+            shown = page.inner_text("main")
+            assert not re.search("NaN|null|undefined|Infinity", shown), shown
+        sides = "&".join(f"{side}=Convex,{numbers}" for side in "ab")
+        page.evaluate(f"location.hash = '#collide?{sides}'")
+        wait_until(page, "part.opened")
+        assert not re.search("NaN|null|undefined|Infinity", page.inner_text("main"))
 
 
 def test_coming_back_to_the_world(world: Any) -> None:

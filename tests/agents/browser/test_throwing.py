@@ -270,6 +270,51 @@ def test_the_lamp(browser: Any, file: Path) -> None:
         assert page.evaluate("arkanoid.part.lamp") is None
 
 
+def focused(page: Any) -> tuple[str, str]:
+    """Return role and name of what has the focus, as the browser tells those who can't see."""
+    tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")
+    *_, node = (
+        node
+        for node in tree["nodes"]
+        for trait in node.get("properties", [])
+        if trait["name"] == "focused" and trait["value"]["value"]
+    )
+    return node["role"]["value"], node["name"]["value"]
+
+
+def test_the_lamp_by_keyboard(browser: Any, file: Path) -> None:
+    """Only a pointer could move it: it had no keys, no name and no ring."""
+    scene = "#world?lamp=0,0&b=AxisAlignedRectangle,5,0,0,0,2,2"
+    with open_world(browser, file, scene, reduced_motion="reduce", **DESKTOP) as page:
+        wait_until(page, "part.live && !part.runs")
+        press = page.keyboard.press
+        page.locator("#world-picture").focus()
+        before = page.locator("#world-picture").screenshot()
+        press("Tab")
+        page.wait_for_timeout(100)
+        assert page.locator("#world-picture").screenshot() != before
+        assert focused(page) == ("group", "Lamp at 0, 0")
+        press("ArrowLeft")
+        press("Shift+ArrowUp")
+        assert page.evaluate("arkanoid.part.lamp") == [-0.1, 1]
+        wait_until(page, "location.hash.includes('lamp=-0.1,1')")
+        assert focused(page) == ("group", "Lamp at −0.1, 1")
+        for _ in range(12):
+            press("Shift+ArrowUp")
+        assert page.evaluate("arkanoid.part.lamp") == [-0.1, 8]
+        press("n")
+        press("ArrowRight")
+        assert page.evaluate("arkanoid.part.lamp") == [-0.1, 8]
+        assert things(page)[0].x == 5.1
+        press("Tab")
+        press("Delete")
+        assert page.evaluate("arkanoid.part.lamp") is None
+        assert not page.is_checked("#lamp")
+        press("Control+z")
+        assert page.evaluate("arkanoid.part.lamp") == [-0.1, 8]
+        assert len(things(page)) == 1
+
+
 def test_too_many_inside_sensors(browser: Any, file: Path) -> None:
     """A sentence says so; the world waits as it began, and goes on without the sensors."""
     discs = [Thing(x=i % 40 / 2 - 9.75, y=i // 40 / 2 - 6, width=0.1) for i in range(1000)]

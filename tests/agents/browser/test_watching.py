@@ -19,9 +19,10 @@ from arkanoid.agents.cli import main
 from arkanoid.agents.experiment.runs import ModelFile
 from arkanoid.agents.show.page import as_html
 from arkanoid.agents.show.report import show_alive
+from arkanoid.envs.browser import shipped
 from helpers.browser import DESKTOP, PATIENCE, visit, wait_until
 from helpers.processes import ARKANOID
-from helpers.runs import facts_with, packaged_copy
+from helpers.runs import facts_with, packaged_copy, sentence
 
 # A whole game, decision by decision and tick by tick: what it looks like in the end.
 BOTH_WAYS = """async (name) => {
@@ -204,4 +205,21 @@ def test_without_a_linker_there_is_a_sentence(
     assert main(["web", "--out", str(tmp_path / "game.html")]) == 2
     assert "needs the linker wasm-ld" in capsys.readouterr().err
     # A report only lacks the agent at play.
+    assert show_alive(ModelFile.find("lite", False), []) == ""
+
+
+@pytest.mark.parametrize("call", [["web"], ["web", "--out", "game.html"], ["watch", "--web"]])
+def test_that_there_is_no_linker_is_said_at_once(
+    call: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All was compiled before, for ten seconds or more; so it was for a report."""
+
+    def compile_() -> bytes:
+        raise AssertionError
+
+    monkeypatch.setattr(page_module, "game_module", compile_)
+    monkeypatch.setattr(shipped, "offers_module", lambda: False)
+    error = sentence(call, capsys)
+    assert "linker wasm-ld" in error
+    assert 'pip install -e ".[web]"' in error
     assert show_alive(ModelFile.find("lite", False), []) == ""

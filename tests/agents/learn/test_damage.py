@@ -64,6 +64,17 @@ def run(stopped: RunFolder, tmp_path: Path) -> RunFolder:
     return RunFolder(tmp_path / "run")
 
 
+def test_a_reproduction_that_is_stopped_says_so(
+    run: RunFolder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It ended without a word, and left a folder that looks like a run."""
+    run.add_notes(weights="0" * 64)
+    with stopped_at(512):
+        assert cli.main(["reproduce", str(run.path)]) == 130
+    _, again = sorted(run.path.parent.iterdir())
+    assert f"nothing needs {again}" in capsys.readouterr().out
+
+
 # Two processes
 
 
