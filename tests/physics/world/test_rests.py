@@ -223,6 +223,34 @@ def test_however_few_hits_nothing_tunnels(max_hits: int) -> None:
             assert deepest_overlap(bodies_of(world)) < 0.01
 
 
+def test_light_crates_under_heavy_ones_have_room() -> None:
+    """In steps of the solver it is far: after a few too many, these counted as crushed, and sank.
+
+    There are two towers, and in this order of their bodies it takes 140 steps.
+    """
+    crates = [(0, 0, 0.01), (4, 1, 1), (4, 0, 0.01), (4, 2, 0.01), (0, 1, 100)]  # x, level, mass
+    places = [(x, level + 0.5) for x, level, _ in crates]
+    bodies = [
+        Body(BOX, place, mass=mass, restitution=0)
+        for place, (_, _, mass) in zip(places, crates, strict=True)
+    ]
+    world = World([FLOOR, *bodies])
+    weights = [
+        sum(mass for x, level, mass in crates if x == there and level >= lowest)
+        for there, lowest, _ in crates
+    ]
+    for _ in range(5):
+        pull(world, 1)
+        hits = world.step(0.05)
+        pushes = {(hit["a"], hit["b"]): -hit["impulse"] for hit in hits}
+        on = {(0, 1): 1, (0, 3): 3, (2, 3): 2, (2, 4): 4, (1, 5): 5}  # who each crate is
+        assert pushes.keys() == on.keys()
+        for pair, body in on.items():
+            assert pushes[pair] == pytest.approx(0.1 * weights[body - 1], rel=1e-9)
+    assert world.capped == 0
+    assert world.positions[1:] == pytest.approx(np.array(places), abs=1e-11)
+
+
 CORNERS = {
     "half-planes": [Body(HalfPlane((0, 1)), restitution=0), Body(HalfPlane((1, 0)), restitution=0)],
     "a wedge": [
