@@ -117,9 +117,10 @@ class Questions:
         """Return what a ray from start to end, or a disc cast along it, meets first; or None.
 
         A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
-        a side does not. At a corner the normal points against the ray, but is turned no further
-        than the normals of the corner's sides. A ray along the border of two polygons, or half-
-        planes, is inside of both together: it meets them where the border begins.
+        a side does not. One that would enter if it were longer meets it at its end. At a corner the
+        normal points against the ray, but is turned no further than the normals of the corner's
+        sides. A ray along the border of two polygons, or half-planes, is inside of both together:
+        it meets them where the border begins.
         """
         ray = new_ray(*vector("start", start), *vector("end", end))
         self._cast(ray, radius, mask)
