@@ -1,7 +1,7 @@
 """`WorldBatch`: copies of a world that are stepped together, by the kernel that steps one."""
 
 import itertools
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -149,6 +149,13 @@ class WorldBatch:
             ValueError: if it is corrupt, or of another batch. This batch does not change then.
         """
         self._alone.run(unpack, snapshot, self._family)
+
+    def __reduce__(self) -> NoReturn:
+        """Say what to do instead of pickling or copying: a batch has threads."""
+        raise TypeError(
+            "a WorldBatch cannot be pickled or copied: make another one of the same world, and "
+            "restore a snapshot of this one"
+        )
 
     def close(self) -> None:
         """End the threads, if there are any."""

@@ -117,9 +117,10 @@ class Questions:
         """Return what a ray from start to end, or a disc cast along it, meets first; or None.
 
         A ray that enters a body at a corner meets it; one that only grazes a corner or runs along
-        a side does not. At a corner the normal points against the ray, but is turned no further
-        than the normals of the corner's sides. A ray along the border of two polygons, or half-
-        planes, is inside of both together: it meets them where the border begins.
+        a side does not. One that would enter if it were longer meets it at its end. At a corner the
+        normal points against the ray, but is turned no further than the normals of the corner's
+        sides. A ray along the border of two polygons, or half-planes, is inside of both together:
+        it meets them where the border begins.
         """
         ray = new_ray(*vector("start", start), *vector("end", end))
         self._cast(ray, radius, mask)
@@ -221,7 +222,7 @@ class Questions:
     def _indices(self, handles: Any) -> IndexArray:
         """Check the handles of some bodies, and return their indices, int64 [n]."""
         numbers, setup = np.asarray(handles), self.site.setup
-        if numbers.ndim != 1 or (len(numbers) and numbers.dtype.kind != "i"):
+        if numbers.ndim != 1 or (len(numbers) and numbers.dtype.kind not in "iu"):
             raise TypeError(f"handles must be integers, [n], but are {handles!r}")
         numbers = numbers.astype(np.int64)
         indices: IndexArray = numbers & INDEX_MASK
@@ -239,8 +240,8 @@ def _read_only(array: FloatArray) -> FloatArray:
 
 
 def bits(name: str, value: Any) -> int:
-    """Return an integer of 64 bits."""
+    """Return an integer of 64 bits, as one with a sign: -1 and 2**64 - 1 have all of them."""
     bits = integer(name, value)
-    if not -(1 << 63) <= bits < 1 << 63:
+    if not -(1 << 63) <= bits < 1 << 64:
         raise ValueError(f"{name} must fit into 64 bits, but is {value!r}")
-    return bits
+    return bits if bits < 1 << 63 else bits - (1 << 64)

@@ -1,7 +1,7 @@
 """A group that is resolved together: the hits that it has, and what its bodies do next."""
 
 from ...kernels import kernel
-from ...tolerances import NO_APPROACH, NO_TURN, RESOLVED, ROUGHLY, STEPS_PER_TOUCH
+from ...tolerances import NO_APPROACH, NO_TURN, RESOLVED, ROUGHLY, STEPS_OF_ALL, STEPS_PER_TOUCH
 from ..meetings.bounces import turn_velocity
 from ..meetings.events import contact_point, write_event
 from ..meetings.passing import slowest_hit
@@ -47,7 +47,7 @@ def meet_together(
     has_room_for_all = True
     tolerance = ROUGHLY  # until it is known who is in the group
     for _ in range(2 * touches_of(world).shape[0]):  # two rounds at least add a touch, or end it
-        has_room_for_all = resolve(world, tolerance, STEPS_PER_TOUCH)
+        has_room_for_all = resolve(world, tolerance, STEPS_PER_TOUCH, STEPS_OF_ALL)
         if not has_room_for_all:
             break
         if not join_neighbours(world, now, now_low):

@@ -12,8 +12,9 @@ least, and there is only one answer for the velocities, whatever the order of th
 
 The method is MPRGP (Z. Dostal, Optimal Quadratic Programming Algorithms, Springer 2009): conjugate
 gradients for the touches that have an impulse, until one would pull; and a step along the others'
-slopes where these are steeper. For n touches it takes about n steps. Slopes are in units of the
-group's speed, and weights of the largest one, so that no square overflows or vanishes.
+slopes where these are steeper. For n touches it takes about n steps, or more where light bodies
+bear heavy ones. Slopes are in units of the group's speed, and weights of the largest one, so that
+no square overflows or vanishes.
 """
 
 import math
@@ -25,7 +26,7 @@ from ..state.view import WorldView, members_of, progress_of, touches_of
 
 
 @kernel
-def resolve(world: WorldView, tolerance: float, steps_per_touch: int) -> bool:
+def resolve(world: WorldView, tolerance: float, steps_per_touch: int, steps_of_all: int) -> bool:
     """Find the velocities of all members; return False if there are none, or it takes too long.
 
     If there are none, because there is no room for the bodies, each touch in turn gets what it
@@ -34,7 +35,8 @@ def resolve(world: WorldView, tolerance: float, steps_per_touch: int) -> bool:
     Args:
         world: the world.
         tolerance: what a touch may lack, a fraction of the group's speed.
-        steps_per_touch: after so many steps, and a few, it takes too long.
+        steps_per_touch: after so many steps for each touch, and a few, it takes too long.
+        steps_of_all: if this is more, after so many of all touches together.
     """
     touches = progress_of(world).touches
     if _bounce_each(world):
@@ -45,7 +47,7 @@ def resolve(world: WorldView, tolerance: float, steps_per_touch: int) -> bool:
     longest = _longest_step(world)
     _weigh(world)
     is_new = True
-    for _ in range(STEPS + steps_per_touch * touches):
+    for _ in range(STEPS + max(steps_per_touch * touches, steps_of_all // touches)):
         most, free, bound = _measure(world, speed)
         if most * speed <= tolerance * group_speed(world):
             return True

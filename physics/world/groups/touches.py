@@ -147,10 +147,10 @@ def join(
         if approach < -least and progress.elastic:
             return False
     aim = restitution * max(approach, 0.0)
-    if traits_of(world)[b].inverse_mass == 0.0 and _is_same_wall(
-        world, a, b, normal_x, normal_y, restitution, aim, now, now_low
-    ):
-        return False
+    if traits_of(world)[b].inverse_mass == 0.0:
+        vx, vy = (old_ax, old_ay) if approach > least else (ax, ay)
+        if _is_same_wall(world, a, b, normal_x, normal_y, vx, vy, restitution, aim, now, now_low):
+            return False
     if not append(world, a, b, normal_x, normal_y, restitution, aim):
         return False
     if restitution > 0.0:
@@ -236,6 +236,8 @@ def _is_same_wall(
     b: int,
     normal_x: float,
     normal_y: float,
+    vx: float,
+    vy: float,
     restitution: float,
     aim: float,
     now: float,
@@ -243,15 +245,18 @@ def _is_same_wall(
 ) -> bool:
     """Return whether a body touches another body that is one wall with b, as at a seam.
 
-    Then it would not hit the one if it slid along the other. Of two that are so, the one that is
-    met more along a face stays.
+    Then it would not hit the one if it slid along the other, with that velocity (vx, vy) with which
+    it meets b: as it came, or as the group leaves it. Of two that are so, the one that is met more
+    along a face stays.
     """
     for index in range(progress_of(world).touches):
         touch = touches_of(world)[index]
         if touch.a != a or not move_as_one(world, touch.b, b):
             continue
-        is_behind = not _hits_along(world, a, b, touch.normal_x, touch.normal_y, now, now_low)
-        is_before = not _hits_along(world, a, touch.b, normal_x, normal_y, now, now_low)
+        is_behind = not _hits_along(
+            world, a, b, touch.normal_x, touch.normal_y, vx, vy, now, now_low
+        )
+        is_before = not _hits_along(world, a, touch.b, normal_x, normal_y, vx, vy, now, now_low)
         if is_behind and is_before:
             is_before = is_straighter(
                 world,
@@ -282,10 +287,18 @@ def _is_same_wall(
 
 @kernel
 def _hits_along(
-    world: WorldView, a: int, b: int, normal_x: float, normal_y: float, now: float, now_low: float
+    world: WorldView,
+    a: int,
+    b: int,
+    normal_x: float,
+    normal_y: float,
+    vx: float,
+    vy: float,
+    now: float,
+    now_low: float,
 ) -> bool:
-    """Return whether a body hits another one without mass, b, if it slides along a face of it."""
-    x, y, vx, vy = motion_at(world, a, now, now_low)
+    """Return whether a body with a velocity hits one without mass, b, if it slides along a face."""
+    x, y, _, _ = motion_at(world, a, now, now_low)
     their_x, their_y, their_vx, their_vy = motion_at(world, b, now, now_low)
     vx, vy = vx - their_vx, vy - their_vy
     margin_x, margin_y = margins_of(world, a, b, x, y, their_x, their_y)

@@ -51,9 +51,10 @@ def enter_sensor(
 
 @kernel
 def leave_placed(world: WorldView, hits: Hits, count: int, world_index: int) -> int:
-    """Note which sensors bodies are no longer inside as a step begins, because somebody moved one.
+    """Note which sensors bodies are no longer inside as a step begins, because one was moved.
 
-    It returns how many events there are. A body that was placed inside again has not left.
+    Somebody has placed it, or relaxation has moved it. It returns how many events there are. A body
+    that was placed inside again has not left.
     """
     clock, firsts, pairs = clock_of(world), first_inside_of(world), pairs_of(world)
     if inside_of(world).count == 0:
@@ -125,7 +126,7 @@ def leave_sensor(
     """Note that a body has left a sensor, if it has; return how many events there are.
 
     Both have moved in straight lines: it left when it would enter if both moved backwards from
-    here. (Or relaxation moved it out, as the step began.)
+    here.
     """
     here = traits_of(world)[sensor]
     there = traits_of(world)[body]

@@ -113,7 +113,7 @@ def _relax_together(world: WorldView, deepest: float) -> bool:
     progress, members = progress_of(world), members_of(world)
     if progress.touches < 2:
         return True
-    if not resolve(world, RESOLVED, RELAX_STEPS):
+    if not resolve(world, RESOLVED, RELAX_STEPS, 0):
         return False
     for index in range(progress.members):
         member = members[index]

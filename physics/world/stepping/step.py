@@ -177,6 +177,8 @@ def begin_step(world: WorldView, hits: Hits, count: int, world_index: int, dt: f
     if header_of(world).continuous:
         _plan(world, clock.planned != PLANNED)
         if progress.overlapping and relax_overlaps(world):
+            if header_of(world).sensors > 0:
+                count = leave_placed(world, hits, count, world_index)
             _plan(world, False)
         clock.planned = PLANNED
         _end_freshness(world)

@@ -1,6 +1,7 @@
 """What a world refuses; each message says which value is wrong and why."""
 
 import math
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ WRONG: list[tuple[str, Any, type[Exception], str]] = [
     ("place", lambda w: w.add(Fog(DISC, (0, NAN))), ValueError, r"position\[1\].*finite.*nan"),
     ("place 3", lambda w: w.add(Fog(DISC, (0, 1, 2))), ValueError, "position.*two.*has 3"),
     ("category", lambda w: w.add(FLOOR, category=1.0), TypeError, "category.*integer.*1.0"),
-    ("category", lambda w: w.add(FLOOR, category=1 << 63), ValueError, "category.*64 bits"),
+    ("category", lambda w: w.add(FLOOR, category=1 << 64), ValueError, "category.*64 bits"),
     ("mask", lambda w: w.add(FLOOR, mask=-(1 << 63) - 1), ValueError, "mask.*64 bits.*-9223"),
     ("mask", lambda w: w.add(FLOOR, mask="all"), TypeError, "mask.*integer.*'all'"),
     ("max_hits", lambda _: World(max_hits=0), ValueError, "max_hits must be at least 1.*0"),
@@ -65,6 +66,7 @@ WRONG: list[tuple[str, Any, type[Exception], str]] = [
     ("batch", lambda w: WorldBatch(w, 0), ValueError, "num_worlds must be at least 1"),
     ("batch", lambda w: WorldBatch(w, 2, threads=0), ValueError, "threads must be at least 1"),
     ("batch", lambda w: WorldBatch(w, "2"), TypeError, "num_worlds.*integer.*'2'"),
+    ("copy", lambda w: deepcopy(WorldBatch(w, 2)), TypeError, "Batch cannot be.*a snapshot"),
 ]
 
 

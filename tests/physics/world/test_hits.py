@@ -258,6 +258,17 @@ def test_two_bodies_meet_if_each_mask_has_the_other_category(
         assert (world.positions[:, 0].tolist() == [-0.25, 0.75]) == bool(meets)
 
 
+def test_the_highest_bit_is_a_category_and_all_bits_are_a_mask() -> None:
+    """``1 << 63`` and ``2**64 - 1`` "must fit into 64 bits", although they do."""
+    world = World()
+    for x, speed, mask in ((0, 1, 2**64 - 1), (3, 0, 1 << 63), (9, 0, (1 << 63) - 1)):
+        world.add(Body(DISC, (x, 0), (speed, 0), mass=1), category=1 << 63, mask=mask)
+    (hit,) = world.step(9.0)
+    assert (hit["a"], hit["b"]) == (0, 1)
+    assert world.query_point((9, 0), 1 << 63).tolist() == [2]
+    assert world.query_point((9, 0), 2**63 - 1).tolist() == []
+
+
 # The procedure of the lecture on collisions in games: detection, relaxation, bounce.
 
 

@@ -221,3 +221,67 @@ def test_however_few_hits_nothing_tunnels(max_hits: int) -> None:
             after = (world.velocities[4:10] ** 2).sum() * 2 + (world.velocities[10:] ** 2).sum()
             assert after <= before * (1 + 1e-12)
             assert deepest_overlap(bodies_of(world)) < 0.01
+
+
+def test_light_crates_under_heavy_ones_have_room() -> None:
+    """In steps of the solver it is far: after a few too many, these counted as crushed, and sank.
+
+    There are two towers, and in this order of their bodies it takes 140 steps.
+    """
+    crates = [(0, 0, 0.01), (4, 1, 1), (4, 0, 0.01), (4, 2, 0.01), (0, 1, 100)]  # x, level, mass
+    places = [(x, level + 0.5) for x, level, _ in crates]
+    bodies = [
+        Body(BOX, place, mass=mass, restitution=0)
+        for place, (_, _, mass) in zip(places, crates, strict=True)
+    ]
+    world = World([FLOOR, *bodies])
+    weights = [
+        sum(mass for x, level, mass in crates if x == there and level >= lowest)
+        for there, lowest, _ in crates
+    ]
+    for _ in range(5):
+        pull(world, 1)
+        hits = world.step(0.05)
+        pushes = {(hit["a"], hit["b"]): -hit["impulse"] for hit in hits}
+        on = {(0, 1): 1, (0, 3): 3, (2, 3): 2, (2, 4): 4, (1, 5): 5}  # who each crate is
+        assert pushes.keys() == on.keys()
+        for pair, body in on.items():
+            assert pushes[pair] == pytest.approx(0.1 * weights[body - 1], rel=1e-9)
+    assert world.capped == 0
+    assert world.positions[1:] == pytest.approx(np.array(places), abs=1e-11)
+
+
+CORNERS = {
+    "half-planes": [Body(HalfPlane((0, 1)), restitution=0), Body(HalfPlane((1, 0)), restitution=0)],
+    "a wedge": [
+        Body(HalfPlane((0, 1)), restitution=0),
+        Body(HalfPlane((0.8, 0.6)), (0.25, 0), restitution=0),
+    ],
+    "tiles": [
+        Body(AxisAlignedRectangle(1, 1), place, restitution=0)
+        for place in ((0.5, -0.5), (1.5, -0.5), (-0.5, -0.5), (-0.5, 0.5), (-0.5, 1.5))
+    ],
+}
+
+
+@pytest.mark.parametrize("corner", CORNERS)
+@pytest.mark.parametrize("mass", [0.01, 1.0, 100.0])
+def test_what_lies_in_a_corner_is_pressed_against_both_sides(corner: str, mass: float) -> None:
+    """A heavy disc threw a light one to and fro between them, 2000 times at one time.
+
+    Floor and wall counted as one wall with a seam, since it did not slide from the one into the
+    other: before the hit it did not move. But the hit drives it there.
+    """
+    world = World(CORNERS[corner])
+    lower = world.add(Body(Particle(0.5), (0.5, 0.5), mass=mass, restitution=0))
+    upper = world.add(Body(Particle(0.5), (1.1, 2.3), (0, -8), mass=10, restitution=0))
+    hits = world.step(0.2)
+    assert world.capped == 0
+    assert len(set(hits["time"])) == 1
+    sides = [hit["impulse"] * hit["normal"] for hit in hits if hit["a"] != lower]
+    (push,) = (hit["impulse"] * hit["normal"] for hit in hits if hit["a"] == lower)
+    assert len(sides) == 2
+    assert np.sum(sides, axis=0) == pytest.approx(push, rel=1e-12)
+    assert world.velocity(lower).tolist() == [0, 0]
+    # The heavy one keeps what was along the light one, as if that were fixed.
+    assert world.velocity(upper) == pytest.approx([3.84, -2.88], rel=1e-12)

@@ -297,16 +297,21 @@ def test_a_ball_that_is_served_again_is_noticed_again() -> None:
     assert hits["time"] == pytest.approx([3.5, 2.0, 9.5, 2.0])
 
 
-def test_a_body_relaxed_out_of_a_sensor_leaves_as_the_step_begins() -> None:
-    """The time was before the step: when it would have left, had it moved there by itself."""
-    world = with_sensor(SQUARE, Body(DISC, (0, 0), (1, 0), mass=1))
+@pytest.mark.parametrize("velocity", [(0, 1), (0, -1), (1, 0), (0, 0)])
+def test_a_body_relaxed_out_of_a_sensor_leaves_at_once(velocity: tuple[float, float]) -> None:
+    """The time was before the step: when it would have left, had it moved there by itself.
+
+    If the sensor came after it, it still counted as inside, and did not enter again.
+    """
+    world = with_sensor(SQUARE, Body(DISC, (-0.5, 1), (1, 0), mass=1))
     world.step(1.0)
-    world.add(Body(AxisAlignedRectangle(4, 4), (2, 0)))
-    world.place(2, (0.9, 0))
-    world.place(1, velocity=(2, 0))
-    (left,) = world.step(0.25)
-    assert world.positions[1].tolist() == [3.9, 0]
-    assert (left["kind"], left["time"]) == (END, 1.0)
+    world.add(Body(AxisAlignedRectangle(8, 1), (0, 0.8)))
+    world.place(0, velocity=velocity)
+    hits = world.step(0.5)
+    assert world.positions[1].tolist() == [1, 1.8]
+    hits, comes_after = hits[hits["b"] == 1], velocity == (0, 1)
+    assert hits["kind"].tolist() == ([END, BEGIN] if comes_after else [END])
+    assert hits["time"] == pytest.approx([1.0, 1.3] if comes_after else [1.0])
 
 
 # Many sensors, and random ones.
