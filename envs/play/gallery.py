@@ -88,7 +88,9 @@ def terminal_colours(stream: TextIO, environment: Mapping[str, str]) -> int:
 
 def level_text(level: Level) -> str:
     """Return a level as the text of a level file."""
-    headings = [f"name: {level.name}", f"comment: {level.comment}"]
+    headings = [f"name: {level.name}"]
+    if level.comment:
+        headings.append(f"comment: {level.comment}")
     if level.boss:
         headings.append("boss: yes")
     rows = ["".join(BRICK_LETTERS[kind] for kind in row) for row in level.kinds]
@@ -104,7 +106,7 @@ def level_in_colours(level: Level, colours: int) -> str:
     parts += [f"{gold} of gold" if gold else "", "the boss" if level.boss else ""]
     rows = ["".join(_cell(int(kind), colours) for kind in row) + _RESET for row in level.kinds]
     head = f"{level.name}: {', '.join(part for part in parts if part)}"
-    return "\n".join([head, level.comment, *rows])
+    return "\n".join([head, *([level.comment] if level.comment else []), *rows])
 
 
 def _cell(kind: int, colours: int) -> str:

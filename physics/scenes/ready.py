@@ -265,7 +265,9 @@ SCENES: dict[str, Scene] = {
     "tiles": Scene("A box over tiles", "No seam stops it.", _tiles(), gravity=10.0),
     "pile": Scene("A pile of crates", "It stands until it is hit.", _pile(), gravity=10.0),
     "pi": Scene("Digits of π", "Count the hits: there are 314.", _pi(10_000.0)),
-    "rays": Scene("A fan of rays", "Drag the lamp.", _rays(), lamp=(0.0, 0.0)),
+    "rays": Scene(
+        "A fan of rays", "Drag the lamp, or take the arrow keys.", _rays(), lamp=(0.0, 0.0)
+    ),
     "gate": Scene("A sensor", "It notices who enters and leaves.", _gate()),
     "world": Scene("Exact steps", "It is fast, and the wall is thin.", _thin()),
     "crowd": Scene("A crowd", "A thousand discs.", _crowd()),

@@ -44,6 +44,14 @@ def test_a_levels_text_is_its_file(name: str) -> None:
     np.testing.assert_array_equal(again.kinds, level.kinds)
 
 
+def test_a_level_without_a_comment_shows_none() -> None:
+    """An empty heading, or an empty line above the picture, stood for it."""
+    text = "name: Plain\n\nwwwwwwwwwww\n"
+    level = parse_level(text, "plain.txt")
+    assert "comment" not in level_text(level)
+    assert "\n\n" not in level_in_colours(level, COLOURS_256)
+
+
 @pytest.mark.parametrize("difficulty", [0.0, 0.5, 1.0])
 def test_a_generated_level_can_be_kept_as_a_file(difficulty: float) -> None:
     for seed in range(30):
@@ -94,7 +102,7 @@ def test_each_kind_of_brick_has_its_own_colour(name: str, colours: int) -> None:
 def test_of_256_colours_the_nearest_is_taken() -> None:
     for kind in range(1, 11):
         level = parse_level("." * 5 + ".wocgrbmySX"[kind] + "....w", "one.txt")
-        row = level_in_colours(level, COLOURS_256).split("\n")[2]
+        row = level_in_colours(level, COLOURS_256).split("\n")[1]
         code = int(re.findall(r"38;5;(\d+);48;5;\d+m▀", row)[0])
         wanted = [int(np.argmin(abs(CUBE - part))) for part in PALETTE[BRICK_BODY + kind]]
         assert code - 16 == 36 * wanted[0] + 6 * wanted[1] + wanted[2]
