@@ -118,7 +118,7 @@ def test_others_do_not_call_what_belongs_to_a_kernel(tmp_path: Path) -> None:
         f"        s += x * {i}.5 / (y + {i})\n"
         f"        if s > y:\n"
         f"            s = s / (x + {i})\n"
-        for i in range(300)  # enough that LLVM leaves it apart from two callers
+        for i in range(200)  # enough that LLVM leaves it apart from two callers
     )
     file = tmp_path / "large.py"
     file.write_text(f"def large(kind, unused, x, y):\n    s = 0.0\n{branches}    return s\n")
