@@ -145,7 +145,10 @@ def make(wanted: Wanted | None, served: bool) -> "tuple[str, FollowedRun | None]
     Raises `SettingsError` for what is wrong with the agent, and where the game can't be made for
     browsers.
     """
-    _check_module()
+    from ...envs.browser.shipped import offers_module
+
+    if not offers_module():  # before the agents are compiled
+        raise _without_linker()
     agents: list[BrowserAgent] = []
     run, asked = None, None
     if wanted is not None:
@@ -160,20 +163,17 @@ def make(wanted: Wanted | None, served: bool) -> "tuple[str, FollowedRun | None]
     shown = None if run is None else {"live": served, "news": run.news()}
     try:
         return make_page(agents, "watch" if wanted else "play", shown, asked), run
-    except ImportError as error:  # of the linker
-        raise SettingsError(str(error)) from None
+    except ImportError as error:  # the module that came with the package is of other sources
+        raise _without_linker() from error
 
 
-def _check_module() -> None:
-    """Raise `SettingsError` where the game can't be made for browsers, before it is compiled."""
-    from ...envs.browser.shipped import offers_module
-
-    if not offers_module():
-        install = f'{command("pip", "install", "-e")} ".[web]"'
-        raise SettingsError(
-            f"to make the page needs the linker wasm-ld: run `{install}` in arkanoid's repository, "
-            f"or install Debian's package lld"
-        )
+def _without_linker() -> SettingsError:
+    """Return the error where the game can't be made for browsers."""
+    install = f'{command("pip", "install", "-e")} ".[web]"'
+    return SettingsError(
+        f"to make the page needs the linker wasm-ld: run `{install}` in arkanoid's repository, "
+        f"or install Debian's package lld"
+    )
 
 
 def _find(
