@@ -18,7 +18,7 @@ except ImportError as error:
 from ..physics.kernels.portable.cuda import cuda_core
 from .batch.batch import Autoreset
 from .state import INFO_FIELDS, Worlds
-from .tensors.batch import TensorBatch
+from .tensors.batch import TensorBatch, check_plain
 from .vector_env import ArkanoidVectorEnv
 
 
@@ -62,9 +62,10 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
             # Also where somebody makes it inside of inference mode, and steps outside of it.
             with torch.inference_mode(False):
                 self._tensors = TensorBatch(self._batch, self.device)
-        except torch.OutOfMemoryError as error:
+        except (torch.OutOfMemoryError, MemoryError) as error:
             raise MemoryError(
-                f"num_envs={num_envs} does not fit into the memory of {self.device}"
+                f"num_envs={num_envs} does not fit into the memory of {self.device}: take fewer, "
+                f"or smaller observations ({error})"
             ) from error
         self._was_reset = np.zeros(num_envs, np.bool_)
         self._owners = torch.ones(num_envs, dtype=torch.bool, device=self.device)
@@ -75,8 +76,8 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
 
     @property
     def illegal_actions(self) -> Tensor:
-        """How many illegal actions each world was given, int32 [n]."""
-        return self._tensors.illegal
+        """How many illegal actions each world was given, int32 [n], as a copy."""
+        return self._tensors.illegal.clone()
 
     def reset(
         self, *, seed: Any = None, options: dict[str, Any] | None = None
@@ -87,12 +88,9 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
         """
         mask = self._everywhere
         if isinstance(options, dict) and "reset_mask" in options:
-            mask = options["reset_mask"]
-            if isinstance(mask, Tensor):
-                mask = mask.cpu().numpy()
+            mask = _read_mask(options["reset_mask"])
             options = {**options, "reset_mask": mask}
-        with self._on_host():
-            _, infos = super().reset(seed=seed, options=options)
+        _, infos = self._tensors.on_host(super().reset, seed=seed, options=options)
         self._was_reset |= mask
         return self._seen(), self._as_tensors(infos)
 
@@ -129,20 +127,17 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
 
     def set_start(self, world: int, options: dict[str, Any]) -> None:
         """Set how a world's next games begin, while its present one goes on."""
-        with self._on_host():
-            super().set_start(world, options)
+        self._tensors.on_host(super().set_start, world, options)
 
     def restore(self, snapshot: bytes) -> tuple[Any, dict[str, Any]]:
         """Go on from a snapshot, of this class or of `ArkanoidVectorEnv`."""
-        with self._on_host():
-            _, infos = super().restore(snapshot)
+        _, infos = self._tensors.on_host(super().restore, snapshot)
         self._was_reset[:] = True
         return self._seen(), self._as_tensors(infos)
 
     def spread(self, snapshot: bytes, seed: int | None = None) -> tuple[Any, dict[str, Any]]:
         """Bring all worlds into the same state."""
-        with self._on_host():
-            _, infos = super().spread(snapshot, seed)
+        _, infos = self._tensors.on_host(super().spread, snapshot, seed)
         self._was_reset[:] = True
         return self._seen(), self._as_tensors(infos)
 
@@ -173,9 +168,6 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
             "games on a device can't be recorded: make the environment without device=..., and "
             "restore a snapshot there"
         )
-
-    def _on_host(self) -> "_OnHost":
-        return _OnHost(self._tensors)
 
     def _own(self, tensor: Tensor) -> Tensor:
         return tensor.clone() if self.copy else tensor
@@ -209,17 +201,14 @@ class ArkanoidTensorVectorEnv(ArkanoidVectorEnv):
         return {key: torch.from_numpy(value).to(self.device) for key, value in infos.items()}
 
 
-class _OnHost:
-    """While it is entered, this processor has the worlds; then the device takes them back."""
-
-    def __init__(self, tensors: TensorBatch) -> None:
-        self._tensors = tensors
-
-    def __enter__(self) -> None:
-        self._tensors.pull()
-
-    def __exit__(self, *exception: object) -> None:
-        self._tensors.push()
+def _read_mask(mask: Any) -> Any:
+    """Return the mask of a reset, which may be a tensor, as an array."""
+    if not isinstance(mask, Tensor):
+        return mask
+    check_plain(mask, "options['reset_mask']")
+    if mask.dtype != torch.bool:
+        raise TypeError(f"options['reset_mask'] must be of bool; got a tensor of {mask.dtype}")
+    return mask.cpu().numpy()
 
 
 def read_device(device: Any) -> torch.device:

@@ -370,7 +370,8 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
                 f"options['reset_mask'] must have shape ({self.num_envs},) and a True in it; "
                 f"got {mask!r}"
             )
-        return mask
+        # Kernels are compiled anew for an array whose numbers do not lie side by side.
+        return np.ascontiguousarray(mask)
 
     def _observations(self) -> Observations:
         observations = self._batch.observations

@@ -1,14 +1,15 @@
 """A batch whose worlds live in tensors, and are stepped where these are."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from ..actions import BOX, COMMANDS
+from ...physics.kernels.one_thread import OneThread
+from ..actions import BOX, COMMANDS, as_float32, read_array
 from ..batch.batch import Autoreset, Batch
 from ..draw.canvas import Drawn
 from ..observe.pixels import PixelObserver
@@ -24,13 +25,14 @@ from .running import Runs
 # have: larger blocks would leave a part of the card without work.
 _FEW, _MANY = 32, 256
 _WORD = 8  # bytes of a picture that a thread moves
+R = TypeVar("R")
 
 
 class TensorBatch:
     """The worlds of a `Batch` in the memory of a device, which steps them.
 
     The batch has the last word on all that happens seldom: how episodes begin, snapshots and
-    pictures for people. `pull` gives it the worlds for that, and `push` takes them back.
+    pictures for people. `pull` gives it the worlds for that; `on_host` lets it change them.
 
     Args:
         host: the batch.
@@ -43,10 +45,12 @@ class TensorBatch:
         observations, finals: by the kind of observation, see `parts`; the latter are the last ones
             of the episodes that ended.
         illegal: int32 [n], how many illegal actions each world was given; each stood still.
+        alone: it refuses other calls while one is in progress.
     """
 
     def __init__(self, host: Batch, device: torch.device) -> None:
         self.host, self.device = host, device
+        self.alone = OneThread("this environment")
         count = host.num_worlds
         self._record = np.zeros(1, Arrays)
         self._kept: list[Tensor] = []
@@ -106,7 +110,7 @@ class TensorBatch:
                 at here, because that would wait for the device.
             RuntimeError: another call is in progress.
         """
-        self.host.alone.run(self._step, self._read(actions))
+        self.alone.run(self._step, self._read(actions))
 
     def _step(self, actions: Tensor) -> None:
         if not self._is_whole:
@@ -120,10 +124,29 @@ class TensorBatch:
         self._is_whole = True
 
     def _mend(self) -> None:
-        """Begin the episodes that an interrupted step has ended and not begun again."""
+        """Begin the episodes that an interrupted call has ended and not begun again."""
         self._pull()
         self.host.end_interrupted_step()
         self._push()
+
+    def on_host(self, function: Callable[..., R], *arguments: Any, **keywords: Any) -> R:
+        """Call a function that changes the worlds in the host, and take them from there.
+
+        Raises:
+            RuntimeError: another call is in progress.
+        """
+        return self.alone.run(self._on_host, function, *arguments, **keywords)
+
+    def _on_host(self, function: Callable[..., R], *arguments: Any, **keywords: Any) -> R:
+        self._pull()
+        # Until all of it is done: Ctrl-C may come at any time.
+        self._is_whole = False
+        try:
+            result = function(*arguments, **keywords)
+        finally:
+            self._push()
+        self._is_whole = True
+        return result
 
     def pull(self) -> None:
         """Give the worlds to the host, if they were stepped since it had them.
@@ -131,7 +154,7 @@ class TensorBatch:
         Raises:
             RuntimeError: another call is in progress.
         """
-        self.host.alone.run(self._pull)
+        self.alone.run(self._pull)
 
     def _pull(self) -> None:
         if not self._is_ahead:
@@ -145,15 +168,8 @@ class TensorBatch:
         host.adopt(worlds, outcomes, shown)
         self._is_ahead = False
 
-    def push(self) -> None:
-        """Take the worlds of the host.
-
-        Raises:
-            RuntimeError: another call is in progress.
-        """
-        self.host.alone.run(self._push)
-
     def _push(self) -> None:
+        """Take the worlds of the host."""
         host = self.host
         _copy(self._worlds, host.worlds)
         _copy(self._outcomes, host.outcomes)
@@ -180,25 +196,24 @@ class TensorBatch:
 
     def _read(self, actions: Any) -> Tensor:
         """Return actions as a tensor of the right form."""
-        try:
-            if isinstance(actions, np.ndarray):
-                # torch warns of arrays that may not be written, and refuses those read backwards.
-                actions = actions.copy() if not actions.flags.writeable else actions
-                actions = np.ascontiguousarray(actions)
-            # Detached: the worlds take no part in the gradients of a network that chose velocities.
-            tensor = torch.as_tensor(actions).detach()
-        except (RuntimeError, TypeError, ValueError) as error:
-            raise TypeError(f"{actions!r:.200} is no tensor of actions: {error}") from error
         shape = tuple(self._actions.shape)
         discrete = len(shape) == 1
-        no_number = tensor.is_complex() or tensor.dtype == torch.bool
-        no_integer = discrete and tensor.is_floating_point()
-        if tuple(tensor.shape) != shape or no_number or no_integer:
-            what = f"{shape[0]} integers" if discrete else f"numbers of shape {shape}, in {BOX}"
+        what = f"{shape[0]} integers" if discrete else f"numbers of shape {shape}, in {BOX}"
+        if not isinstance(actions, Tensor):
+            actions = _read_others(actions, what)
+        if isinstance(actions, Tensor):
+            check_plain(actions, "actions")
+            # Detached: the worlds take no part in the gradients of a network that chose velocities.
+            found, kind = actions.detach(), _kind_of(actions)
+        else:
+            found, kind = actions, actions.dtype.kind
+        if tuple(found.shape) != shape or kind not in ("iu" if discrete else "iuf"):
             raise ValueError(
-                f"actions must be {what}; got {tensor.dtype} of shape {tuple(tensor.shape)}"
+                f"actions must be {what}; got {found.dtype} of shape {tuple(found.shape)}"
             )
-        return tensor
+        if isinstance(found, Tensor):
+            return found
+        return torch.from_numpy(found.astype(np.int64) if discrete else as_float32(found))
 
     def _observers(self) -> dict[str, Any]:
         """Return the host's observers by their kind."""
@@ -280,9 +295,35 @@ class TensorBatch:
 def _again(host: Batch, device: torch.device, illegal: Tensor) -> TensorBatch:
     """Return the batch of a host that was copied or unpickled."""
     batch = TensorBatch(host, device)
-    batch.push()
+    batch.on_host(lambda: None)
     batch.illegal.copy_(illegal)
     return batch
+
+
+def check_plain(tensor: Tensor, what: str) -> None:
+    """Raise a TypeError if a tensor is no plain array of numbers."""
+    if tensor.is_nested or tensor.layout is not torch.strided or tensor.is_meta:
+        kind = "nested" if tensor.is_nested else "meta" if tensor.is_meta else tensor.layout
+        raise TypeError(f"{what} must be a dense tensor with its numbers in memory; got {kind}")
+
+
+def _read_others(actions: Any, what: str) -> Any:
+    """Return actions that are no tensor as a tensor or an array; those of a card stay there."""
+    if isinstance(actions, np.ndarray) or not hasattr(actions, "__dlpack__"):
+        return read_array(actions, what)
+    try:
+        return torch.from_dlpack(actions)
+    except (BufferError, RuntimeError, TypeError, ValueError) as error:
+        raise TypeError(f"{actions!r:.200} is not {what}, and no tensor: {error}") from error
+
+
+def _kind_of(tensor: Tensor) -> str:
+    """Return the kind of a tensor's numbers, as NumPy names it."""
+    if tensor.is_complex():
+        return "c"
+    if tensor.dtype == torch.bool:
+        return "b"
+    return "f" if tensor.is_floating_point() else "i"
 
 
 def _as_tensor(array: NDArray[Any]) -> Tensor:

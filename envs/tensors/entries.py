@@ -19,9 +19,10 @@ from .playing import begin_again, keep_number, play, report
 def step_vector(index: int, address: int) -> None:
     """Play a decision in a world that is seen as a vector."""
     arrays = array_at(address, (1,), Arrays)[0]
-    if play(index, arrays):
+    played = play(index, arrays)
+    if played:
         observe_vector(index, address, arrays)
-        report(index, arrays)
+    report(index, arrays, played)
 
 
 @kernel
@@ -43,9 +44,10 @@ def keep_vectors(index: int, address: int) -> None:
 def step_grid(index: int, address: int) -> None:
     """Play a decision in a world that is seen as a grid."""
     arrays = array_at(address, (1,), Arrays)[0]
-    if play(index, arrays):
+    played = play(index, arrays)
+    if played:
         observe_grid(index, address, arrays)
-        report(index, arrays)
+    report(index, arrays, played)
 
 
 @kernel
@@ -67,9 +69,10 @@ def keep_grids(index: int, address: int) -> None:
 def step_rgb(index: int, address: int) -> None:
     """Play a decision in a world that is seen as pictures."""
     arrays = array_at(address, (1,), Arrays)[0]
-    if play(index, arrays):
+    played = play(index, arrays)
+    if played:
         draw_canvas(index, address, arrays)
-        report(index, arrays)
+    report(index, arrays, played)
 
 
 @kernel
@@ -96,10 +99,11 @@ def fill(index: int, address: int) -> None:
 def step_dict(index: int, address: int) -> None:
     """Play a decision in a world that is seen as pictures and as a vector."""
     arrays = array_at(address, (1,), Arrays)[0]
-    if play(index, arrays):
+    played = play(index, arrays)
+    if played:
         draw_canvas(index, address, arrays)
         observe_vector(index, address, arrays)
-        report(index, arrays)
+    report(index, arrays, played)
 
 
 @kernel

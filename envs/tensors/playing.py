@@ -65,8 +65,6 @@ def play(index: int, arrays: Any) -> bool:
     """
     worlds = world_of(index, arrays)
     if arrays.autoreset == _DISABLED and worlds[0].done != 0:
-        array_at(arrays.rewards, (arrays.count,), FLOAT64)[index] = 0.0
-        array_at(arrays.moves, (arrays.count,), BYTE)[index] = STAYED
         return False
     step_worlds(
         worlds,
@@ -98,20 +96,37 @@ def _commands(index: int, arrays: Any) -> Any:
 
 
 @kernel
-def report(index: int, arrays: Any) -> None:
-    """Write the results of a world's step."""
+def report(index: int, arrays: Any, played: bool) -> None:
+    """Write the results of a world's step; if it was not played, nothing has happened in it."""
     count, outcomes = arrays.count, outcome_of(index, arrays)
     world, outcome = world_of(index, arrays)[0], outcomes[0]
+    if not played:
+        _forget_decision(outcome)
     array_at(arrays.rewards, (count,), FLOAT64)[index] = outcome.reward
     array_at(arrays.terminated, (count,), BOOL)[index] = outcome.terminated
     array_at(arrays.truncated, (count,), BOOL)[index] = outcome.truncated
     move = PLAYED
-    if world.decisions == world.first_decision:
+    if not played:
+        move = STAYED
+    elif world.decisions == world.first_decision:
         move = BEGUN
     elif world.done != 0 and arrays.autoreset == _SAME_STEP:
         move = ENDED
     array_at(arrays.moves, (count,), BYTE)[index] = move
     _tabulate(index, outcomes, arrays.infos, count)
+
+
+@inlined
+def _forget_decision(outcome: Any) -> None:
+    """Let an outcome tell of no decision; how the episode has ended stays in it."""
+    outcome.reward = 0.0
+    outcome.hits = 0
+    outcome.bricks_broken = 0
+    outcome.lives_gained = 0
+    outcome.capsules_caught = 0
+    outcome.enemies_destroyed = 0
+    outcome.lives_lost = 0
+    outcome.rounds_cleared = 0
 
 
 @kernel

@@ -19,7 +19,7 @@ class Runs:
         device: if it is a card, with its index.
 
     Raises:
-        ImportError, RuntimeError: see `CudaKernels`.
+        ImportError, MemoryError, RuntimeError: see `CudaKernels`.
     """
 
     def __init__(self, entries: Sequence[Entry], device: torch.device) -> None:
@@ -29,7 +29,8 @@ class Runs:
             # Imported on demand: it needs a package that only cards do.
             from ...physics.kernels.portable.cuda import CudaKernels
 
-            with torch.cuda.device(device):  # torch goes on with the card that it had before
+            # Torch goes on with the card that it had before.
+            with torch.cuda.device(device):
                 self._on_card = CudaKernels(entries, device.index)
 
     def of(self, entry: Entry, threads: int) -> RunEntry:
@@ -47,6 +48,10 @@ class Runs:
         def run_there(count: int, address: int) -> None:
             # A stream may be the default one, which each card has.
             with torch.cuda.device(device):
-                launch(count, address, torch.cuda.current_stream(device).cuda_stream)
+                try:
+                    launch(count, address, torch.cuda.current_stream(device).cuda_stream)
+                except MemoryError as error:
+                    # Callers know torch's own error for it.
+                    raise torch.OutOfMemoryError(str(error)) from error
 
         return run_there

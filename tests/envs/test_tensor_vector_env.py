@@ -11,8 +11,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 import torch
-from gymnasium.error import ResetNeeded
-from helpers.interrupts import interrupted_at
 from helpers.processes import INTERPRETED, run_program
 from helpers.tensors import LIVELY, draw_actions, make, same, same_step
 
@@ -33,9 +31,9 @@ def pair(count=WORLDS, **keywords):
     return make("cpu", count, **keywords), make(None, count, **keywords)
 
 
-def begun(count=WORLDS, **keywords):
+def begun(count=WORLDS, game="Arkanoid-v0", **keywords):
     """Return a tensor environment that was reset."""
-    env = make("cpu", count, **keywords)
+    env = make("cpu", count, game, **keywords)
     env.reset(seed=0)
     return env
 
@@ -137,7 +135,11 @@ def test_illegal_actions_stand_still_and_are_counted():
     for _ in range(5):
         found = env.step(torch.tensor([6, -1, 2**40]))
         same_step(found, other.step([0, 0, 0]))
-    assert env.illegal_actions.tolist() == [5, 5, 5]
+    before = env.illegal_actions
+    assert before.tolist() == [5, 5, 5]
+    env.step([9, 9, 9])
+    # It was the very tensor that the next steps count in.
+    assert (env.illegal_actions - before).tolist() == [1, 1, 1]
     env, other = pair(2, actions="box")
     env.reset(seed=0)
     other.reset(seed=0)
@@ -164,6 +166,41 @@ def test_worlds_that_are_over_stay_in_mode_disabled():
     assert env.state.tobytes() != worlds
     assert env.snapshot(1) != before
     assert env.state["done"].tolist()[1] != 0
+
+
+@pytest.mark.parametrize("kind", ["vector", "grid", "rgb", "dict"])
+def test_worlds_that_are_over_tell_the_same_after_a_restore_or_a_copy(kind):
+    """There, their episodes seemed to go on: neither terminated nor truncated, infos all 0."""
+    keywords = {**KINDS[kind], "autoreset_mode": "Disabled", "max_decisions": 3}
+    env = begun(2, **keywords)
+    still = np.zeros(env.action_space.shape, env.action_space.dtype)
+    for _ in range(3):
+        last = env.step(still)
+    twins = copy.deepcopy(env), make("cpu", 2, **keywords)
+    restored = twins[1].restore(env.snapshot())
+    for key, value in last[4].items():
+        assert torch.equal(restored[1][key], value), key
+    waiting = env.step(still)
+    assert waiting[3].all()
+    assert waiting[4]["truncation"].tolist() == [1, 1]
+    for twin in twins:
+        assert str(twin.step(still)) == str(waiting)
+
+
+def test_a_world_that_is_over_counts_nothing():
+    """Who added up infos counted the last decision again and again."""
+    env = begun(1, "ArkanoidLite-v0", autoreset_mode="Disabled", lives=1, life_penalty=1.0)
+    for _ in range(3000):
+        _, rewards, terminated, _, infos = env.step([0])
+        if terminated:
+            break
+    assert (infos["lives_lost"].item(), rewards.item()) == (1, -1.0)
+    for _ in range(2):
+        _, rewards, terminated, _, infos = env.step([0])
+        assert terminated.item()
+        assert (infos["lives_lost"].item(), rewards.item()) == (0, 0.0)
+        assert infos["lives"].item() == 0
+    assert env.restore(env.snapshot())[1]["lives_lost"].item() == 0
 
 
 @pytest.mark.parametrize("copied", [True, False])
@@ -202,7 +239,7 @@ def test_results_belong_to_the_caller(kind):
 def scribble(results):
     """Write nonsense into all tensors."""
     if isinstance(results, torch.Tensor):
-        results.fill_(1)
+        results.copy_(~results if results.dtype == torch.bool else torch.ones_like(results))
     else:
         for part in results.values() if isinstance(results, dict) else results:
             scribble(part)
@@ -258,41 +295,6 @@ def test_a_copy_of_the_environment_plays_on_by_itself(kind, copier):
     play(twin, copy.deepcopy(other), 10)
     assert env.snapshot() == before
     play(env, other, 10)
-
-
-def test_the_first_reset_may_be_partial():
-    env = make("cpu", 3)
-    with pytest.raises(ResetNeeded, match=r"reset\(\) before the first step\(\): worlds \[0, 1, 2"):
-        env.step([0, 0, 0])
-    env.reset(seed=0, options={"reset_mask": torch.tensor([True, False, True])})
-    with pytest.raises(ResetNeeded, match=r"worlds \[1\]"):
-        env.step([0, 0, 0])
-    env.reset(options={"reset_mask": np.array([False, True, False])})
-    env.step([0, 0, 0])
-
-
-def test_an_interrupted_step_does_no_harm():
-    """In same-step mode, an ended episode went on where the next one had not begun."""
-    env = begun(3, autoreset_mode="SameStep", max_decisions=1)
-    actions = torch.zeros(3, dtype=torch.int64)
-    left_over = 0
-    for event in range(1, 100):
-        if not interrupted_at(event, lambda: env.step(actions)):
-            break
-        left_over += bool(env.state["done"].any())
-        env.step(actions)
-        assert not env.state["done"].any()
-        assert (env.state["decisions"] == 0).all()
-    assert 10 < event < 99
-    assert left_over > 0
-
-
-def test_another_thread_is_refused():
-    env = begun(2)
-    env._batch.alone.taken = True
-    for call in (lambda: env.step([0, 0]), env.reset, lambda: env.restore(b""), lambda: env.state):
-        with pytest.raises(RuntimeError, match="one thread at a time"):
-            call()
 
 
 def test_inference_mode_around_the_making_of_an_environment():

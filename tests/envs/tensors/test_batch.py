@@ -1,6 +1,7 @@
 """Batches of tensors: which actions and devices they take, and what they say of others."""
 
 import sys
+from contextlib import nullcontext
 
 import arkanoid  # noqa: F401
 import numpy as np
@@ -23,8 +24,21 @@ def batch(count=2, **keywords):
     host = Batch(count, Config.from_keywords(keywords))
     host.reset(np.ones(count, np.bool_), None, list(range(count)))
     tensors = TensorBatch(host, CPU)
-    tensors.push()
+    tensors.on_host(lambda: None)
     return tensors
+
+
+class Foreign:
+    """Numbers of another library, which are known by DLPack alone."""
+
+    def __init__(self, tensor):
+        self.tensor = tensor
+
+    def __dlpack__(self, **keywords):
+        return self.tensor.__dlpack__(**keywords)
+
+    def __dlpack_device__(self):
+        return self.tensor.__dlpack_device__()
 
 
 @pytest.mark.parametrize(
@@ -38,11 +52,18 @@ def batch(count=2, **keywords):
         np.broadcast_to(np.array([1, 2]), (3, 2))[0],
         torch.tensor([1, 2], dtype=torch.int32),
         torch.tensor([[1, 0], [2, 0]])[:, 0],
+        torch.tensor([1, 2], dtype=torch.uint64),
+        np.array([1, 2], ">i8"),
+        [np.array(1), np.array(2)],
+        Foreign(torch.tensor([1, 2])),
     ],
     ids=repr,
 )
 def test_integers_of_any_kind(actions):
-    """Torch refuses arrays that are read backwards, and warns of those that can't be written."""
+    """What the processor's environment takes was refused: another order of bytes, lists of arrays.
+
+    Torch also refuses arrays that are read backwards, and warns of those that can't be written.
+    """
     one, other = batch(), batch()
     one.step(torch.tensor([1, 2]))
     other.step(actions)
@@ -54,19 +75,26 @@ def test_integers_of_any_kind(actions):
 @pytest.mark.parametrize(
     ("actions", "error", "message"),
     [
-        ([1], ValueError, r"must be 2 integers; got torch.int64 of shape \(1,\)"),
+        ([1], ValueError, r"must be 2 integers; got int64 of shape \(1,\)"),
+        (torch.tensor([1]), ValueError, r"must be 2 integers; got torch.int64 of shape \(1,\)"),
         ([[1, 2]], ValueError, r"of shape \(1, 2\)"),
         (1, ValueError, r"of shape \(\)"),
-        ([1.0, 2.0], ValueError, "got torch.float32"),
-        ([True, False], ValueError, "got torch.bool"),
+        ([1.0, 2.0], ValueError, "got float64"),
+        ([True, False], ValueError, "got bool"),
+        (torch.tensor([True, False]), ValueError, "got torch.bool"),
         (torch.zeros(2, dtype=torch.complex64), ValueError, "got torch.complex64"),
-        (["left", "right"], TypeError, "no tensor of actions"),
-        (None, TypeError, "None is no tensor of actions"),
-        (np.array([None, 1]), TypeError, "no tensor of actions"),
+        (["left", "right"], ValueError, "got <U5"),
+        (None, ValueError, "got object"),
+        (np.array([None, 1]), ValueError, "got object"),
+        ([[1], [1, 2]], TypeError, r"is not in 2 integers, and no array"),
+        (torch.tensor([1, 2]).to_sparse(), TypeError, r"dense tensor .* got torch.sparse_coo"),
+        (torch.empty(2, dtype=torch.int64, device="meta"), TypeError, "got meta"),
+        (Foreign(torch.tensor([1, 2], dtype=torch.complex64)), ValueError, "got torch.complex64"),
     ],
     ids=repr,
 )
 def test_other_forms_of_actions_are_refused(actions, error, message):
+    """Some ended in errors of torch that say nothing of actions."""
     tensors = batch()
     with pytest.raises(error, match=message):
         tensors.step(actions)
@@ -85,6 +113,22 @@ def test_velocities_of_a_network_that_learns():
     velocities = torch.zeros((2, 2), dtype=torch.float64, requires_grad=True)
     tensors.step(velocities * 2.0)
     assert not tensors._actions.requires_grad
+
+
+def test_velocities_do_not_depend_on_how_torch_reads_lists(monkeypatch):
+    """With another default of torch, 0.1 was rounded to three digits, or had no numbers at all."""
+    one, other = batch(actions="box"), batch(actions="box")
+    velocities = [[0.1, 1.0], [-0.3, 0.0]]
+    one.step(np.array(velocities))
+    torch.set_default_dtype(torch.float16)
+    try:
+        with torch.device("meta"):
+            other.step(velocities)
+    finally:
+        torch.set_default_dtype(torch.float32)
+    one.pull()
+    other.pull()
+    assert one.host.worlds.tobytes() == other.host.worlds.tobytes()
 
 
 @pytest.mark.parametrize("device", ["tpu", "mps", "", "cuda:x"])
@@ -189,6 +233,28 @@ def test_too_little_memory(monkeypatch):
     monkeypatch.setattr("arkanoid.envs.tensor_vector_env.TensorBatch", refuse)
     with pytest.raises(MemoryError, match="num_envs=3 does not fit into the memory of cpu"):
         make("cpu", 3)
+
+
+def test_too_little_memory_for_the_threads_of_a_card(card, monkeypatch):
+    """A card reserves their stacks when it runs kernels for the first time: in the first step."""
+
+    class Kernels:
+        def __init__(self, entries, number):
+            pass
+
+        def launcher(self, entry, threads):
+            def refuse(*arguments):
+                raise MemoryError("too little memory left for the game's kernels")
+
+            return refuse
+
+    monkeypatch.setattr(torch.cuda, "device", lambda device: nullcontext())
+    stream = type("Stream", (), {"cuda_stream": 77})
+    monkeypatch.setattr(torch.cuda, "current_stream", lambda device: stream)
+    monkeypatch.setattr("arkanoid.physics.kernels.portable.cuda.CudaKernels", Kernels)
+    run = running.Runs([STEPS["vector"][0].entry], torch.device("cuda", 0))
+    with pytest.raises(torch.OutOfMemoryError, match="left for the game's kernels"):
+        run.of(STEPS["vector"][0].entry, 32)(5, 4711)
 
 
 def test_records_are_refused():

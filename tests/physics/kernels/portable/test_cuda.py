@@ -14,6 +14,7 @@ class Core:
 
     def __init__(self, error=None):
         self.calls = []
+        self.refuses = None  # the error of a launch
         self.ObjectCode = SimpleNamespace(from_ptx=lambda text: self._code(text, error))
         self.Stream = SimpleNamespace(from_handle=lambda handle: self._note("stream", handle))
         self.LaunchConfig = lambda grid, block: (grid, block)
@@ -32,6 +33,8 @@ class Core:
 
     def launch(self, *arguments):
         self._note("launch", *arguments)
+        if self.refuses is not None:
+            raise self.refuses
 
 
 @pytest.fixture
@@ -63,6 +66,27 @@ def test_as_many_blocks_as_there_are_items(card):
 def test_a_card_that_refuses(card):
     with pytest.raises(RuntimeError, match=r"card 1 refuses .*\(no binary for it\).*8\.0.*driver"):
         card(ValueError("no binary for it"))
+
+
+OUT = RuntimeError("CUDA_ERROR_OUT_OF_MEMORY: The API call failed")
+
+
+def test_a_card_without_room(card):
+    """It was told to be too old, or in the first step an error of the driver came."""
+    message = r"card 1 has too little memory left .*CUDA_ERROR_OUT_OF_MEMORY.*take fewer games"
+    with pytest.raises(MemoryError, match=message):
+        card(OUT)
+    core, kernels = card()
+    core.refuses = OUT
+    with pytest.raises(MemoryError, match=message):
+        kernels.launcher(ENTRY, 32)(1, 4711, 5)
+
+
+def test_a_card_that_stops(card):
+    core, kernels = card()
+    core.refuses = ValueError("CUDA_ERROR_LAUNCH_FAILED")
+    with pytest.raises(RuntimeError, match=r"card 1 does not run .*\(CUDA_ERROR_LAUNCH_FAILED\)"):
+        kernels.launcher(ENTRY, 32)(1, 4711, 5)
 
 
 def test_without_the_package(monkeypatch):
