@@ -1,6 +1,7 @@
 """`ArkanoidVectorEnv`: many games as one Gymnasium vector environment, stepped by one kernel."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -111,12 +112,17 @@ class ArkanoidVectorEnv(gym.vector.VectorEnv[Observations, NDArray[np.int64], An
         except MemoryError as error:
             raise MemoryError(f"num_envs={num_envs} does not fit into memory") from error
         self.single_observation_space = self._batch.observer.space
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.single_action_space = action_space(self.config)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.layout = self._batch.observer.layout
         self._everywhere = np.ones(num_envs, np.bool_)
         self._attributes: dict[str, tuple[Any, ...]] = {}
+
+    # Made when it is asked for: of a million worlds, it takes gigabytes and many seconds.
+    @cached_property
+    def observation_space(self) -> Any:  # type: ignore[override]
+        """The space of all worlds' observations."""
+        return batch_space(self.single_observation_space, self.num_envs)
 
     def reset(
         self,

@@ -135,14 +135,15 @@ class TensorBatch:
         Raises:
             RuntimeError: another call is in progress.
         """
-        return self.alone.run(self._on_host, function, *arguments, **keywords)
+        result: R = self.alone.run(self._on_host, function, *arguments, **keywords)
+        return result
 
     def _on_host(self, function: Callable[..., R], *arguments: Any, **keywords: Any) -> R:
         self._pull()
         # Until all of it is done: Ctrl-C may come at any time.
         self._is_whole = False
         try:
-            result = function(*arguments, **keywords)
+            result: R = function(*arguments, **keywords)
         finally:
             self._push()
         self._is_whole = True
@@ -312,7 +313,7 @@ def _read_others(actions: Any, what: str) -> Any:
     if isinstance(actions, np.ndarray) or not hasattr(actions, "__dlpack__"):
         return read_array(actions, what)
     try:
-        return torch.from_dlpack(actions)
+        return torch.utils.dlpack.from_dlpack(actions)
     except (BufferError, RuntimeError, TypeError, ValueError) as error:
         raise TypeError(f"{actions!r:.200} is not {what}, and no tensor: {error}") from error
 
@@ -327,10 +328,12 @@ def _kind_of(tensor: Tensor) -> str:
 
 
 def _as_tensor(array: NDArray[Any]) -> Tensor:
+    """Return an array as a tensor, of the same memory where torch takes it; of records, bytes."""
+    array = np.ascontiguousarray(array)
     if array.dtype.names is not None:
-        array = np.frombuffer(array.tobytes(), np.uint8).reshape(array.size, -1)
-    # A copy: torch warns of arrays that may not be written.
-    return torch.from_numpy(np.array(array))
+        array = array.reshape(-1).view(np.uint8).reshape(array.size, -1)
+    # Torch warns of arrays that may not be written.
+    return torch.from_numpy(array if array.flags.writeable else array.copy())
 
 
 def _copy(tensor: Tensor, array: NDArray[Any]) -> None:

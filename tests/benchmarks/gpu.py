@@ -5,155 +5,124 @@ Run: python tests/benchmarks/gpu.py [--device cpu] [--quick]
 1. games: both play the same decisions, and every number is compared; at most 100,000 decisions of
    4,096 worlds, and for --patience seconds a game. 600 are enough for all of them on 16 cores.
 2. speed: decisions per second, with random actions that are drawn before, after the games have
-   drifted apart.
-3. training: decisions per second of the loop alone; then `quick` and `lite` are trained, for about
-   10 and 60 s on an H100, and play as `arkanoid evaluate` does, beside the packaged `lite`.
-4. peers: those that can be imported: gymnax, PufferLib, env-breakoutatari2600-turbo-native.
+   drifted apart, where there is a goal.
+3. training: decisions per second of the loop alone.
+4. quick, lite: these agents are trained, for about 10 and 60 s on an H100, and play as `arkanoid
+   evaluate` does.
+5. peers: those that can be imported: gymnax, PufferLib, env-breakoutatari2600-turbo-native.
+6. others: the speed of other kinds of games, and how well the packaged `lite` plays.
 
-A ratio says how many times as fast a row is as all cores with the same games. All parts take an
-H100 less than five minutes.
+A ratio says how many times as fast a row is as all cores with the same games. The parts up to the
+agents take an H100 less than five minutes. What fails is told, and the next part begins.
 """
 
 import argparse
-import itertools
 import os
+import subprocess
+import sys
 import time
+import traceback
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from importlib.metadata import version
 from multiprocessing import get_context
-from typing import Any
 
 import arkanoid  # noqa: F401
-import numpy as np
 import torch
-from arkanoid.envs.state import INFO_FIELDS
+from arkanoid.envs.tensor_vector_env import read_device
 from arkanoid.envs.tensors.entries import STEPS
 from arkanoid.physics.kernels.portable.ptx import make_ptx
-from cards.measuring import ACTIONS, QUICK, THOROUGH, Effort, make, player, rate, say, waiting
+from cards.comparing import show_compared
+from cards.measuring import QUICK, THOROUGH, Effort
 from cards.peers import show_peers
-from cards.training import show_training
+from cards.speed import GOALS, OTHERS, show_ours
+from cards.training import show_agent, show_loops, show_packaged
 
-LITE, FULL = "ArkanoidLite-v0", "Arkanoid-v0"
-GREY = {"observation": "rgb", "grey": True}
-SAME, NEXT, DISABLED = ({"autoreset_mode": mode} for mode in ("SameStep", "NextStep", "Disabled"))
-LIVELY = {"life_penalty": 1.0, "levels": "train", "lives": 1}
-SHORT = LIVELY | {"max_decisions": 40, "capsule_rate": 1.0}
-BOTH = {"observation": "dict", "actions": "box"}
-LIVES = {"observation": "grid", "episodic_life": True}
-# What is compared: label, id, keywords, whether with fewer worlds and for a part of the time.
-COMPARED: list[tuple[str, str, dict[str, Any], bool]] = [
-    ("lite, landing", LITE, LIVELY | SAME | {"landing": True}, False),
-    ("full, landing", FULL, LIVELY | SAME | {"landing": True}, False),
-    ("full, next step", FULL, SHORT | NEXT, True),
-    ("full, resets by hand", FULL, SHORT | DISABLED, True),
-    ("full, grid, lives as episodes", FULL, LIVES | SAME, True),
-    ("full, 2 pictures", FULL, SHORT | SAME | GREY | {"stack": 2}, True),
-    ("full, pictures and vector, velocities", FULL, SHORT | SAME | BOTH, True),
-]
-# What is measured: label, id, keywords, the numbers of worlds.
-KINDS: list[tuple[str, str, dict[str, Any], tuple[int, ...]]] = [
-    ("lite, vector", LITE, {}, (4096, 16384, 65536, 262144, 1048576)),
-    ("lite, landing", LITE, {"landing": True}, (65536, 262144)),
-    ("full, vector", FULL, {}, (4096, 65536, 262144)),
-    ("full, grid", FULL, {"observation": "grid"}, (32768,)),
-    ("lite, picture", LITE, GREY | {"stack": 1}, (4096, 32768)),
-    ("lite, 4 pictures", LITE, GREY | {"stack": 4}, (4096, 32768)),
-]
-PARTS = ("games", "speed", "training", "peers")
+Part = Callable[[str, Effort], None]
 
 
-class Judge:
-    """Tells whether tensors always had the bits of arrays; it does not wait for the device."""
-
-    def __init__(self, device: str) -> None:
-        self.device = device
-        self.same = torch.ones((), dtype=torch.bool, device=device)
-
-    def compare(self, found: Any, wanted: Any) -> None:
-        """Compare a tensor with an array, or dictionaries and lists of them."""
-        if isinstance(wanted, dict):
-            for key in wanted:
-                self.compare(found[key], wanted[key])
-        elif isinstance(wanted, list):
-            for pair in zip(found, wanted, strict=True):
-                self.compare(*pair)
-        else:
-            other = torch.from_numpy(np.array(wanted)).to(self.device)
-            assert (found.shape, found.dtype) == (other.shape, other.dtype)
-            # As bytes: 0 is not -0.
-            same = found.contiguous().view(torch.uint8) == other.view(torch.uint8)
-            self.same &= same.all()
+def _others(device: str, effort: Effort) -> None:
+    show_ours(device, OTHERS, effort)
+    show_packaged(effort)
 
 
-def compare(
-    device: str, label: str, game: str, keywords: dict[str, Any], effort: Effort, part: bool
-) -> None:
-    """Play the same decisions in both ways, and say in how many anything was different."""
-    worlds, share = (min(effort.worlds, 512), 0.1) if part else (effort.worlds, 1.0)
-    env, other = (make(place, game, worlds, **keywords) for place in (device, None))
-    judge, random = Judge(device), np.random.default_rng(0)
-    judge.compare(env.reset(seed=1)[0], other.reset(seed=1)[0])
-    num_actions = getattr(env.single_action_space, "n", None)
-    begin, played, patience = time.perf_counter(), 0, share * effort.patience
-    while played < effort.decisions and time.perf_counter() - begin < patience:
-        actions: Any = random.uniform(-1.0, 1.0, (worlds, 2)).astype(np.float32)
-        if num_actions is not None:
-            actions = random.integers(0, num_actions, worlds)
-        *found, infos = env.step(actions)
-        *wanted, other_infos = other.step(actions)
-        judge.compare(found, wanted)
-        judge.compare(infos, {key: other_infos[key] for key in INFO_FIELDS})
-        over = wanted[2] | wanted[3]
-        for world in np.flatnonzero(over)[:4] if "final_obs" in infos else ():
-            last = infos["final_obs"]
-            one = {key: last[key][world] for key in last} if isinstance(last, dict) else last[world]
-            judge.compare(one, other_infos["final_obs"][world])
-        if keywords["autoreset_mode"] == "Disabled" and over.any():
-            judge.compare(*(each.reset(options={"reset_mask": over})[0] for each in (env, other)))
-        played += 1
-    whole = bool(judge.same) and env.snapshot() == other.snapshot()
-    result = "equal" if whole else "DIFFERENT"
-    say(f"{label}, {worlds:,} worlds", f"{played * worlds:14,}  {result}")
-    env.close()
-    other.close()
-
-
-def measure_ours(
-    device: str | None, game: str, worlds: int, keywords: dict[str, Any], effort: Effort
-) -> float:
-    """Return the decisions per second of a kind of games."""
-    env = make(device, game, worlds, **keywords)
-    env.reset(seed=0)
-    drawn = np.random.default_rng(0).integers(0, env.single_action_space.n, (ACTIONS, worlds))
-    actions = list(drawn) if device is None else list(torch.from_numpy(drawn).to(device))
-    found = rate(player(env, itertools.cycle(actions)), worlds, effort, waiting(device))
-    env.close()
-    return found
-
-
-def show_ours(device: str, effort: Effort) -> None:
-    """Print the rows of our games."""
-    for kind, game, keywords, counts in KINDS:
-        smaller = min(counts[-1], effort.most_worlds, 65536 if "vector" in kind else 8192)
-        cores = measure_ours(None, game, smaller, keywords, effort)
-        say(f"{kind}, {smaller:,} worlds, all cores", f"{cores:14,.0f}")
-        for worlds in dict.fromkeys(min(count, effort.most_worlds) for count in counts):
-            label = f"{kind}, {worlds:,} worlds, {device}"
-            try:
-                found = measure_ours(device, game, worlds, keywords, effort)
-            except MemoryError as error:
-                say(label, f"{'left out':>14}")
-                print(f"    {error}"[:79])
-                continue
-            say(label, f"{found:14,.0f}{found / cores:9.2f} x")
+# The parts, the most important ones first, and what is printed above their rows.
+PARTS: dict[str, tuple[str, Part]] = {
+    "games": ("The same decisions on the device and on the processor:", show_compared),
+    "speed": (
+        "Decisions per second (x: times all cores with the same observations):",
+        lambda device, effort: show_ours(device, GOALS, effort),
+    ),
+    "training": ("Training, decisions per second (x: times a core):", show_loops),
+    "quick": (
+        "An agent, decisions per second:",
+        lambda device, effort: show_agent(device, "quick", effort),
+    ),
+    "lite": (
+        "Another agent, decisions per second:",
+        lambda device, effort: show_agent(device, "lite", effort),
+    ),
+    "peers": ("Peers, decisions per second:", lambda device, effort: show_peers(effort)),
+    "others": ("Other games, decisions per second:", _others),
+}
 
 
 def prepare() -> None:
     """Compile the kernels of all kinds of observations at the same time; they are kept on disk."""
-    entries = [[run.entry for run in runs] for runs in STEPS.values()]
+    begin = time.perf_counter()
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        list(pool.map(make_ptx, entries))
+        entries = {kind: [run.entry for run in runs] for kind, runs in STEPS.items()}
+        made = {kind: pool.submit(make_ptx, each) for kind, each in entries.items()}
+        for kind, future in made.items():
+            if (error := future.exception()) is not None:
+                print(f"  kernels for {kind} FAILED: {error}", flush=True)
+    print(f"  kernels: {time.perf_counter() - begin:.0f} s", flush=True)
+
+
+def works(device: str) -> bool:
+    """Tell whether a device still computes: an error in a kernel ends all further work of it."""
+    try:
+        return bool((torch.zeros(1, device=device) + 1).item())
+    except RuntimeError:
+        return False
+
+
+def attempt(part: str, device: str, effort: Effort) -> bool:
+    """Do a part; return False if it has failed, which is told."""
+    title, show = PARTS[part]
+    print(title, flush=True)
+    begin = time.perf_counter()
+    try:
+        show(device, effort)
+    except Exception as error:  # whatever fails, the other parts are worth a card's time
+        print(f"  {part} FAILED: {type(error).__name__}: {error}", flush=True)
+        traceback.print_exc()
+        return False
+    finally:
+        print(f"  {part}: {time.perf_counter() - begin:.0f} s", flush=True)
+    return True
+
+
+def run_again(parts: list[str]) -> int:
+    """Do the parts that are left in another process, with this one's other options."""
+    arguments = [word for word in sys.argv[1:] if word not in ("--only", *PARTS)]
+    return subprocess.run(
+        [sys.executable, __file__, *arguments, "--only", *parts], check=False
+    ).returncode
+
+
+def show(parts: list[str], device: str, effort: Effort) -> int:
+    """Do parts; return how many have failed, or at least that one has."""
+    failed = 0
+    for number, part in enumerate(parts, 1):
+        if attempt(part, device, effort):
+            continue
+        failed += 1
+        if parts[number:] and not works(device):
+            print("The device computes no more: a new process goes on.", flush=True)
+            return failed + run_again(parts[number:])
+    return failed
 
 
 def main() -> None:
@@ -175,25 +144,19 @@ def main() -> None:
     if device is None:
         print("no graphics card: --device cpu --quick tries out what a card would do")
         return
-    card = torch.cuda.get_device_name() if device.startswith("cuda") else "this processor"
+    try:
+        on_card = read_device(device).type == "cuda"
+    except (ImportError, RuntimeError, ValueError) as error:
+        parser.error(str(error))
+    card = torch.cuda.get_device_name(device) if on_card else "this processor"
     begin = time.perf_counter()
-    print(f"{card}, torch {torch.__version__}, {os.cpu_count()} cores, numba {version('numba')}")
-    if device.startswith("cuda"):
+    facts = f"torch {torch.__version__}, {os.cpu_count()} cores, numba {version('numba')}"
+    print(f"{card}, {facts}", flush=True)
+    if on_card:
         prepare()
-    if "games" in options.only:
-        print("The same decisions on the device and on the processor:")
-        for label, game, keywords, part in COMPARED:
-            compare(device, label, game, keywords, effort, part)
-    if "speed" in options.only:
-        print("Decisions per second (x: times all cores with the same observations):")
-        show_ours(device, effort)
-    if "training" in options.only:
-        print("Training, decisions per second (x: times a core):")
-        show_training(device, effort)
-    if "peers" in options.only:
-        print("Peers, decisions per second:")
-        show_peers(effort)
-    print(f"{time.perf_counter() - begin:.0f} s")
+    failed = show([part for part in PARTS if part in options.only], device, effort)
+    print(f"{time.perf_counter() - begin:.0f} s", flush=True)
+    sys.exit(1 if failed else 0)
 
 
 if __name__ == "__main__":

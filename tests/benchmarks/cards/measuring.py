@@ -13,6 +13,7 @@ import torch
 
 ACTIONS = 64  # steps until the actions repeat
 LABEL = 50  # characters
+GREY = {"observation": "rgb", "grey": True}
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class Effort:
     training: int  # decisions are divided by this
 
 
-THOROUGH = Effort(4096, 100_000, 25.0, warm_up=100, turn=1.0, most_worlds=1 << 20, training=1)
-QUICK = Effort(16, 20, 5.0, warm_up=2, turn=0.02, most_worlds=32, training=20_000)
+THOROUGH = Effort(4096, 100_000, 15.0, warm_up=100, turn=1.0, most_worlds=1 << 20, training=1)
+QUICK = Effort(16, 20, 50.0, warm_up=2, turn=0.02, most_worlds=32, training=20_000)
 
 
 def make(device: str | None, game: str, worlds: int, **keywords: Any) -> Any:
@@ -46,6 +47,12 @@ def make(device: str | None, game: str, worlds: int, **keywords: Any) -> Any:
 def say(label: str, text: str) -> None:
     """Print a row."""
     print(f"  {label:{LABEL}}{text}", flush=True)
+
+
+def verdict(effort: Effort, goal: str, met: bool) -> None:
+    """Print whether a goal is met."""
+    told = "met" if met else "MISSED"
+    print(f"    goal {goal}: {told if effort.training == 1 else 'not tried'}", flush=True)
 
 
 def rate(

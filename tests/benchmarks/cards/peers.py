@@ -97,4 +97,4 @@ def show_peers(effort: Effort) -> None:
                 say(label, f"{measure(count, effort):14,.0f}")
             except Exception as error:  # whatever a peer does not like here
                 say(label, f"{'left out':>14}")
-                print(f"    {type(error).__name__}: {error}"[:79])
+                print(f"    {type(error).__name__}: {error}"[:79], flush=True)
