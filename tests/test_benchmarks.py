@@ -123,14 +123,13 @@ def test_gpu_goes_on_in_another_process_with_the_same_options(
     gpu: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     called: list[list[str]] = []
+    options = ["--device", "cuda:1", "--quick"]
     monkeypatch.setattr(
         gpu.subprocess,
         "run",
         lambda command, check: called.append(command) or SimpleNamespace(returncode=0),
     )
-    monkeypatch.setattr(
-        sys, "argv", ["gpu.py", "--only", "games", "peers", "--device", "cuda:1", "--quick"]
-    )
+    monkeypatch.setattr(sys, "argv", ["gpu.py", "--only", "games", "peers", *options])
     assert gpu.run_again(["peers"]) == 0
     assert called[0][2:] == [*options, "--only", "peers"]
     assert not gpu.works("meta")

@@ -68,6 +68,11 @@ class FastPPO(PPO):
             self.policy_kwargs = {"optimizer_kwargs": dict(_FUSED), **self.policy_kwargs}
         super()._setup_model()
 
+    def _setup_learn(self, *arguments: Any, **keywords: Any) -> tuple[int, BaseCallback]:
+        """Begin a training; what ended the one before is no matter."""
+        self._goes_on = True
+        return super()._setup_learn(*arguments, **keywords)
+
     def _excluded_save_params(self) -> list[str]:
         return [*super()._excluded_save_params(), *_OF_THE_LOOPS]
 
@@ -89,6 +94,7 @@ class FastPPO(PPO):
             if reason is not None:
                 raise ValueError(f"FastPPO can't train on a device: {reason}")
             return self._collect_on_device(env, callback)
+        self._loop = None
         if reason is not None:
             if not self._has_told:
                 warnings.warn(f"FastPPO trains as PPO does: {reason}", stacklevel=2)
@@ -143,7 +149,7 @@ class FastPPO(PPO):
         if not self._goes_on:
             self._goes_on = True
             return False
-        if self._loop is None or self._loop.env is not env:
+        if self._loop is None or not self._loop.fits(self, env):
             self._actions, self._loop = actions_of(self.policy), DeviceLoop(self, env)
         loop = self._loop
         callback.on_rollout_start()

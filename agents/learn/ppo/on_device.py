@@ -58,6 +58,7 @@ class DeviceLoop:
         self.values, self.returns = numbers(steps, worlds), numbers(steps, worlds)
         self._advantages, self._log_prob = numbers(steps, worlds), numbers(steps, worlds)
         self.clip, self.clip_of_values = numbers(), numbers()
+        self._key = _key_of(model)
         self._batch_size = min(model.batch_size, steps * worlds)
         self._chosen = numbers(self._batch_size, dtype=torch.int64)
         self._statistics, self._latest = numbers(6), numbers(6)
@@ -65,6 +66,10 @@ class DeviceLoop:
         self._play = Replayed(self._play_rollout, device)
         self._learns(self._learning())
         self._random = torch.Generator(device)
+
+    def fits(self, model: Any, env: TensorVecEnv) -> bool:
+        """Tell whether it can go on with a model as it is now, in an environment."""
+        return self.env is env and self._key == _key_of(model)
 
     def collect(self) -> list[dict[str, Any]]:
         """Play a rollout; return the infos of the latest episodes that ended in it.
@@ -218,3 +223,8 @@ class DeviceLoop:
         self.clip.fill_(model.clip_range(remaining))  # type: ignore[operator]
         if model.clip_range_vf is not None:
             self.clip_of_values.fill_(model.clip_range_vf(remaining))  # type: ignore[operator]
+
+
+def _key_of(model: Any) -> tuple[int, ...]:
+    """Return what the tensors of a loop depend on."""
+    return id(model.policy), model.n_steps, model.batch_size

@@ -135,6 +135,40 @@ def test_a_callback_sees_a_rollout_as_one_step_and_may_end_the_training() -> Non
     assert any((before[name] != now).any() for name, now in model.policy.state_dict().items())
 
 
+def test_a_training_that_was_stopped_at_its_end_may_go_on() -> None:
+    """The next one ended at once: it took the stop for its own."""
+    model = trainer("vector", TensorVecEnv(worlds("vector", device="cpu"), *KEYWORDS))
+    model.learn(STEPS * WORLDS, callback=Stop())
+    model.learn(STEPS * WORLDS)
+    assert model.num_timesteps == STEPS * WORLDS
+    assert model._n_updates == 2 * model.n_epochs
+
+
+def test_an_update_follows_the_rollout_that_was_played_last() -> None:
+    """After games on a device, a training with arrays learned from the device's last rollout."""
+    model = trainer("vector", TensorVecEnv(worlds("vector", device="cpu"), *KEYWORDS))
+    model.learn(STEPS * WORLDS)
+    other = trainer("vector", GymnasiumVecEnv(worlds("vector"), *KEYWORDS))
+    other.policy.load_state_dict(model.policy.state_dict())
+    other.policy.optimizer.load_state_dict(deepcopy(model.policy.optimizer.state_dict()))
+    for each in (model, other):
+        each.set_env(GymnasiumVecEnv(worlds("vector"), *KEYWORDS))
+        each.set_random_seed(7)
+        each.learn(STEPS * WORLDS)
+    for weight, wanted in zip(model.policy.parameters(), other.policy.parameters(), strict=True):
+        assert torch.equal(weight, wanted)
+
+
+def test_the_length_of_rollouts_may_change_between_trainings() -> None:
+    """The loop went on with the old one, and counted with the new."""
+    model = trainer("vector", TensorVecEnv(worlds("vector", device="cpu"), *KEYWORDS))
+    model.learn(STEPS * WORLDS)
+    model.n_steps = 10
+    model.learn(10 * WORLDS)
+    assert model._loop is not None
+    assert model._loop.actions.shape == (10, WORLDS)
+
+
 def test_a_divergence_beyond_the_target_ends_an_update() -> None:
     settings: dict[str, Any] = {"learning_rate": 0.1, "target_kl": 1e-3, "n_epochs": 20}
     model = trainer("vector", TensorVecEnv(worlds("vector", device="cpu"), *KEYWORDS), **settings)
