@@ -16,6 +16,7 @@ from ..lookup.ground import find_at
 from ..state.courses import shown_place
 from ..state.records import RayRecord
 from ..state.view import WorldView, traits_of
+from .rays import last_of
 
 # The other body is looked for near to where a side begins, because there are others farther along;
 # but not too near, because it may begin with a sharp corner. So at several fractions of the side.
@@ -33,6 +34,7 @@ def meet_border(
     body: int,
     unboxed: int,
     used: int,
+    enters: bool,
 ) -> tuple[float, float, float]:
     """Return (time, normal_x, normal_y): where a ray meets the border of a body and another one.
 
@@ -41,18 +43,21 @@ def meet_border(
         shapes, edges: the world's shapes, and the ray's, which is a point, at the end.
         mask: the categories that count.
         unboxed, used: as of `find_at`.
+        enters: whether the ray enters the body, at a corner. If it only grazes the corner, what
+            another body covers beside it tells nothing about the ray.
     """
     time, normal_x, normal_y = _meet_along(world, shapes, edges, ray, mask, body, unboxed, used)
-    if time < math.inf:
+    if time < math.inf or not enters:
         return time, normal_x, normal_y
     own, other = shapes.shape[0] - 1, traits_of(world)[body].collider
     x, y = shown_place(world, traits_of(world)[body])
     margin_x, margin_y = touch_margins(shapes, edges, own, other, ray.x, ray.y, x, y)
     dx, dy, vx, vy = x - ray.x, y - ray.y, -ray.way_x, -ray.way_y
+    last = last_of(ray, margin_x, margin_y)
     tried, number = 0, 0
     while number >= 0:
         tried, number, time, beyond_x, beyond_y = next_end(
-            shapes, edges, own, other, tried, dx, dy, vx, vy, 1.0, margin_x, margin_y
+            shapes, edges, own, other, tried, dx, dy, vx, vy, last, margin_x, margin_y
         )
         if number < 0:
             break
@@ -64,7 +69,7 @@ def meet_border(
             sinks
             and find_at(world, shapes, edges, mask, body, place_x, place_y, unboxed, used) >= 0
         ):
-            return time, -face_x, -face_y
+            return min(time, 1.0), -face_x, -face_y
     return NO_IMPACT
 
 

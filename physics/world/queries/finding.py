@@ -31,7 +31,7 @@ from ..state.view import (
     traits_of,
 )
 from .borders import meet_border
-from .rays import begin_level_walk, begin_tree_walk, find_in_strip, next_leaf, passes_close
+from .rays import begin_level_walk, begin_tree_walk, find_in_strip, last_of, next_leaf, passes_close
 
 SHAPE_SIZE, EDGE_SIZE, RAY_SIZE = Shape.itemsize, Edge.itemsize, Ray.itemsize
 
@@ -198,7 +198,7 @@ def _try(
     may_graze = ray.room == 0.0 and shape.count > 0
     if may_graze and not is_side and passes_close(ray, shape, x, y):
         at_border, border_x, border_y = meet_border(
-            world, shapes, edges, ray, mask, body, unboxed, used
+            world, shapes, edges, ray, mask, body, unboxed, used, time < math.inf
         )
         if at_border < math.inf:
             time, normal_x, normal_y = at_border, border_x, border_y
@@ -216,12 +216,24 @@ def _meet(
     It is that of the whole way, not of what is left of it: so the order of bodies has no influence.
     """
     own, dx, dy, vx, vy = shapes.shape[0] - 1, x - ray.x, y - ray.y, -ray.way_x, -ray.way_y
-    if not may_touch(shapes, own, other, dx, dy, vx, vy, 1.0):
+    if not passes_close(ray, shapes[other], x, y):
         return NO_IMPACT
     margin_x, margin_y = touch_margins(shapes, edges, own, other, ray.x, ray.y, x, y)
     time, normal_x, normal_y = impact_between(
-        shapes, edges, own, other, dx, dy, vx, vy, 1.0, margin_x, margin_y
+        shapes,
+        edges,
+        own,
+        other,
+        dx,
+        dy,
+        vx,
+        vy,
+        last_of(ray, margin_x, margin_y),
+        margin_x,
+        margin_y,
     )
+    if 1.0 < time < math.inf:
+        time = 1.0
     sinks = -(vx * normal_x + vy * normal_y) > margin_along(normal_x, normal_y, margin_x, margin_y)
     if sinks or (
         time == 0.0 and overlap_between(shapes, edges, own, other, dx, dy, margin_x, margin_y)

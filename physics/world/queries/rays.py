@@ -62,6 +62,16 @@ def limit(ray: RayRecord) -> float:
 
 
 @kernel
+def last_of(ray: RayRecord, margin_x: float, margin_y: float) -> float:
+    """Return the fraction at which a ray ends for a body: what it touches at its end, it meets.
+
+    The margins are as of `touching`: rounding may hide such a gap.
+    """
+    length = abs(ray.way_x) + abs(ray.way_y)
+    return 1.0 + (margin_x + margin_y) / length if length > 0.0 else 1.0
+
+
+@kernel
 def _passage(start: float, way: float, lower: float, upper: float) -> tuple[float, float]:
     """Return the fractions of a way at which it enters and leaves an interval."""
     if way > 0.0:
