@@ -75,13 +75,14 @@ NO_BEND = 1e-12
 # Where bodies have no room, each touch gets what it lacks so often. There is no right answer.
 SWEEPS = 8
 
-# Hits of a body at one time. If it bounces on and loses speed each time, there is no end to it: a
-# geometric series. After so many, all that is left of it is lost at once.
-MOST_AT_ONCE = 32
-
 # A fraction of a body's size. If neither body has gone farther since it was moved last, their hit
 # goes nowhere: where there is no room, or less and less, hits follow each other without end.
 NO_WAY = 1e-4
+
+# Hits of a body in a row that go nowhere. If it loses speed each time, there is no end to them, in
+# a finite time: they are a geometric series. After so many its limit is taken: all that is left of
+# the speed is lost at once.
+LONGEST_SERIES = 32
 
 # Such a hit counts for so many. So squeezed bodies cost a millisecond and not ten, while two blocks
 # may hit each other ten thousand times at distances that one can see.

@@ -55,13 +55,25 @@ class World(Questions):
             A hit counts tenfold if its bodies have gone less than 1e-4 of their size to it, or if
             the whole world has had ``max_hits`` in this step. (So a game does not wait long for
             bodies that are squeezed, or very fast.)
+        rest_speed: two bodies that approach no faster than this do not bounce, if their restitution
+            e is below 1: they rest on each other. With gravity g and steps dt, everything comes to
+            rest from g * dt / (1 - e) on.
+
+    Raises:
+        ValueError: if ``max_hits`` is below 1, or ``rest_speed`` is negative or not finite.
     """
 
     def __init__(
-        self, bodies: Iterable[Collidable] = (), *, continuous: bool = True, max_hits: int = 10_000
+        self,
+        bodies: Iterable[Collidable] = (),
+        *,
+        continuous: bool = True,
+        max_hits: int = 10_000,
+        rest_speed: float = 0.0,
     ) -> None:
         self._max_hits = whole("max_hits", max_hits, at_least=1)
-        setup = Setup(FIRST_ROOM, self._max_hits, bool(continuous))
+        slow = not_negative("rest_speed", rest_speed)
+        setup = Setup(FIRST_ROOM, self._max_hits, slow, bool(continuous))
         self._use(Family([setup], [0]).sites[0], OneThread("this world"))
         for body in bodies:
             self.add(body)
@@ -259,8 +271,9 @@ class World(Questions):
         Its bodies have the handles then that they had when it was taken.
 
         Raises:
-            ValueError: if it is corrupt, has another ``max_hits`` or ``continuous``, or shapes that
-                no body of this world ever had. This world does not change then.
+            ValueError: if it is corrupt, has another ``max_hits``, ``rest_speed`` or
+                ``continuous``, or shapes that no body of this world ever had. This world does not
+                change then.
         """
         if self.site.family.sites != [self.site]:
             raise ValueError("this world is part of a batch: restore a snapshot of the batch")
@@ -278,11 +291,13 @@ class World(Questions):
             "colliders": tuple(setup.colliders),
             "continuous": bool(setup.header.continuous),
             "max_hits": self._max_hits,
+            "rest_speed": float(setup.header.rest_speed),
             "snapshot": self._alone.run(pack, [self.site]),
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        World.__init__(self, continuous=state["continuous"], max_hits=state["max_hits"])
+        names = ("continuous", "max_hits", "rest_speed")
+        World.__init__(self, **{name: state[name] for name in names})
         for collider in state["colliders"]:
             self.site.setup.add_collider(collider)
         self.restore(state["snapshot"])

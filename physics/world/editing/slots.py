@@ -73,7 +73,7 @@ def give_slot(world: WorldView, body: int, x: float, y: float, vx: float, vy: fl
     plan.time, plan.time_low = math.inf, 0.0
     plan.kind, plan.partner, plan.stage = NOTHING, 0, FREE
     plan.slack = 0.0
-    plan.tied = plan.hits = plan.rests = plan.instant = plan.nowhere = 0
+    plan.tied = plan.hits = plan.rests = plan.series = plan.nowhere = 0
     plan.suitor = NO_ONE
     plan.is_linked, plan.near, plan.fixed = 0, TOO_MANY, 0
     plan.margin = -1.0  # it is in no box

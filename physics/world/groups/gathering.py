@@ -33,6 +33,8 @@ def meets_alone(world: WorldView, slot: int) -> bool:
     plan = plans[slot]
     if plan.tied or header_of(world).inelastic or progress_of(world).inert:
         return False
+    if header_of(world).rest_speed > 0.0:
+        return False
     other = traits[plan.partner].slot
     if other >= 0 and plans[other].partner == moving_of(world)[slot] and plans[other].tied:
         return False

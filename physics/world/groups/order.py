@@ -2,7 +2,7 @@
 
 from ...kernels import kernel
 from ..lookup.neighbours import sort_items
-from ..state.records import TouchRecord
+from ..state.progress import TouchRecord
 from ..state.view import (
     WorldView,
     members_of,

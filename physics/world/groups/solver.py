@@ -21,7 +21,7 @@ import math
 
 from ...kernels import kernel
 from ...tolerances import NO_BEND, RESOLVED, STEPS, SWEEPS
-from ..state.records import TouchRecord
+from ..state.progress import TouchRecord
 from ..state.view import WorldView, members_of, progress_of, touches_of
 
 

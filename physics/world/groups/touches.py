@@ -136,12 +136,12 @@ def join(
     old_bx, old_by, bx, by = velocities_of(world, b)
     approach = (old_ax - old_bx) * normal_x + (old_ay - old_by) * normal_y
     least = slowest_hit(world, a, b)
-    restitution = restitution_of(world, a, b)
+    remains = (ax - bx) * normal_x + (ay - by) * normal_y
+    restitution = restitution_of(world, a, b, approach if approach > least else remains)
     if approach > least:
         if restitution > 0.0 and progress.receding:
             return False
     else:
-        remains = (ax - bx) * normal_x + (ay - by) * normal_y
         if restitution > 0.0 or not remains > least:
             return False
         if approach < -least and progress.elastic:

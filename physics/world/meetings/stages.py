@@ -1,7 +1,7 @@
 """How far bodies have used up their hits of a step: so a step ends, whatever the numbers are."""
 
 from ...kernels import kernel
-from ...tolerances import HITS_FOR_NOTHING, MOST_AT_ONCE, MOST_RESTS
+from ...tolerances import HITS_FOR_NOTHING, LONGEST_SERIES, MOST_RESTS
 from ..state.records import FREE, HELD, INERT
 from ..state.view import (
     WorldView,
@@ -49,8 +49,8 @@ def count_hit(world: WorldView, slot: int, is_short: bool) -> None:
         is_short: nobody has gone far to this hit, see `is_short_way`.
     """
     plan, progress, max_hits = plans_of(world)[slot], progress_of(world), header_of(world).max_hits
-    plan.instant += 1
-    if plan.instant >= MOST_AT_ONCE:
+    plan.series += 1
+    if plan.series >= LONGEST_SERIES:
         progress.inert = 1
     progress.hits += 1
     is_one = plan.stage == FREE and not is_short and progress.hits <= max_hits

@@ -15,6 +15,7 @@ from ..lookup.grid import SPARE
 from ..lookup.overrides import override_table
 from ..lookup.tree import NO_ONE
 from ..plans.tournament import leaf_count
+from ..state.progress import Member, Progress, Touch
 from ..state.records import (
     FEW_MOVING,
     ON,
@@ -24,14 +25,11 @@ from ..state.records import (
     Entry,
     Grid,
     Header,
-    Member,
     Motion,
     Node,
     Override,
     Plan,
-    Progress,
     Seat,
-    Touch,
     Trait,
     Tree,
 )
@@ -46,7 +44,8 @@ TOUCHES = 4
 MOST_TABLES = 16  # of shapes that queries ask about, kept for the next query
 # What a larger workspace takes over of a smaller one's header.
 _KEPT = (
-    *("bodies", "living", "free", "movers", "sensors", "max_hits", "continuous", "inelastic"),
+    *("bodies", "living", "free", "movers", "sensors", "max_hits", "rest_speed"),
+    *("continuous", "inelastic"),
     *("typical", "margin", "cell", "has_grid", "shapes", "edges", "boundless", "overrides_used"),
 )
 
@@ -67,6 +66,7 @@ class Setup:
     Args:
         room: of the tables.
         max_hits: of one body in one step.
+        rest_speed: the speed up to which a pair meets without restitution.
         continuous: with times of impact, not by the lecture's procedure.
 
     Attributes:
@@ -79,7 +79,7 @@ class Setup:
         numbers, uses, speeds: of the entries, the handles, the states and (vx, vy).
     """
 
-    def __init__(self, room: Room, max_hits: int, continuous: bool) -> None:
+    def __init__(self, room: Room, max_hits: int, rest_speed: float, continuous: bool) -> None:
         self.users = 1
         self.colliders: list[Collider] = []
         self._numbers: dict[Collider, int] = {}
@@ -87,7 +87,8 @@ class Setup:
         self._tables: dict[Collider, tuple[ByteArray, ByteArray]] = {}
         self._use(room, _new_workspace(room))
         header = self.header
-        header.max_hits, header.continuous = max_hits, continuous
+        header.max_hits, header.rest_speed = max_hits, rest_speed
+        header.continuous = continuous
         header.free = NO_ONE
         self.tune()
         enter_all_static(self.workspace)

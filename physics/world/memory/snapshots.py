@@ -19,7 +19,7 @@ from .checks import check_bodies, check_clocks, check_ends, check_motions, check
 from .setup import Setup
 from .site import MOTIONS, Family, Site
 
-VERSION = 3  # of the format
+VERSION = 4  # of the format
 _MARK = b"ARKWORLD"
 _DIGEST_SIZE = 16  # bytes
 
@@ -39,6 +39,7 @@ Kept = record_dtype(
 Head = record_dtype(
     [
         ("max_hits", np.int64),
+        ("rest_speed", np.float64),
         ("continuous", np.int64),
         ("shapes", np.int64),
         ("edges", np.int64),
@@ -51,7 +52,7 @@ Head = record_dtype(
     ]
 )
 _OF_HEADERS = ("bodies", "movers", "free", "sensors", "inelastic")  # what a restore sets
-_ASKED = ("max_hits", "continuous")  # what it must not change
+_ASKED = ("max_hits", "rest_speed", "continuous")  # what it must not change
 
 
 class _Bodies(NamedTuple):
@@ -194,8 +195,8 @@ def _read_bodies(reader: _Reader, bases: Sequence[Setup]) -> _Bodies:
             content = bytes(reader.content[start : reader.at])
             return _Bodies(content, head, traits, entries, overrides, base)
     raise ValueError(
-        "the snapshot is of another world: with another max_hits, or with shapes that this one "
-        "never had. (A pickle holds the shapes, too.)"
+        "the snapshot is of another world: with another max_hits or rest_speed, or with "
+        "shapes that this one never had. (A pickle holds the shapes, too.)"
     )
 
 

@@ -53,12 +53,12 @@ def move_to(world: WorldView, body: int, now: float, now_low: float) -> None:
         motion, plan = motions_of(world)[slot], plans_of(world)[slot]
         x, y, _, _ = motion_at(world, body, now, now_low)
         way = abs(x - motion.x) + abs(y - motion.y)
-        if way > TOUCH * (abs(x) + abs(y)):
-            plan.instant = 0
         size = _size_of(world, body)
+        plan.nowhere = not way > max(NO_WAY * size, TOUCH * (abs(x) + abs(y)))
+        if not plan.nowhere:
+            plan.series = 0
         if 2.0 * way > SLIDE * size:
             plan.rests = 0
-        plan.nowhere = not way > NO_WAY * size
         motion.x, motion.y = x, y
         motion.at, motion.at_low = now, now_low
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 from ...kernels import accessor
 from ...kernels.borrowed import INDEX, anchor, borrowed
 from ...shapes.records import Edge, Edges, Shape, Shapes
+from .progress import Member, Members, Progress, ProgressRecord, Touch, Touches
 from .records import (
     Block,
     Box,
@@ -22,8 +23,6 @@ from .records import (
     Indices,
     Inside,
     InsideRecord,
-    Member,
-    Members,
     Motion,
     Motions,
     Node,
@@ -34,12 +33,8 @@ from .records import (
     Pairs,
     Plan,
     Plans,
-    Progress,
-    ProgressRecord,
     Seat,
     Seats,
-    Touch,
-    Touches,
     Trait,
     Traits,
     Tree,

@@ -314,7 +314,7 @@ def finish_step(world: WorldView, hits: Hits, count: int, world_index: int) -> i
             # What it passes by in this step, it hits in the next one.
             motion.fresh = 1
             clock.fresh = max(clock.fresh, FRESH)
-        plan.hits = plan.rests = plan.instant = plan.nowhere = 0
+        plan.hits = plan.rests = plan.series = plan.nowhere = 0
         plan.stage = FREE
         seen.x, seen.y, seen.vx, seen.vy = x, y, vx, vy
         after.x, after.y, after.vx, after.vy = x, y, vx, vy

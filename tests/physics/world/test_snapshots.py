@@ -132,7 +132,7 @@ def test_a_corrupt_snapshot_is_refused() -> None:
         (b"arkanoid-world", ValueError, "no snapshot of worlds"),
         (b"x" * len(kept), ValueError, "no snapshot of worlds"),
         (changed(kept, 3), ValueError, "no snapshot of worlds"),
-        (changed(kept, 8), ValueError, "of format 2, and this release reads format 3"),
+        (changed(kept, 8), ValueError, "of format 5, and this release reads format 4"),
         (changed(kept, 10), ValueError, "corrupt: some of its bytes have changed"),
         (changed(kept, 14), ValueError, "corrupt: .* bytes of .* are there"),
         (kept[:-1], ValueError, "corrupt: .* bytes of .* are there"),
@@ -192,6 +192,7 @@ def test_worlds_that_differ_in_rules_or_shapes_refuse_each_others_snapshots() ->
         World([Body(disc, (0, 0), (1, 0), mass=1)]),
         World([Body(Particle(0.25), (0, 0), (1, 0), mass=1)]),
         World([Body(disc, (0, 0), (1, 0), mass=1)], max_hits=5),
+        World([Body(disc, (0, 0), (1, 0), mass=1)], rest_speed=0.5),
         World([Body(disc, (0, 0), (1, 0), mass=1)], continuous=False),
     ]
     for number, world in enumerate(variants):
