@@ -1,7 +1,7 @@
 """Wrong calls of the command, typed into a terminal: each gets a sentence, at once.
 
-The calls run in pseudo-terminals, two at a time, in a folder with files that are not what they seem
-to be. None may show a traceback, take long, or end with another status than 2.
+The calls run in pseudo-terminals, in a folder with files that are not what they seem to be. None
+may show a traceback, take long, or end with another status than 2.
 """
 
 import os
@@ -9,8 +9,7 @@ import shutil
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 from zipfile import ZipFile
@@ -212,17 +211,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         others.writestr(WEIGHTS, ours.read(WEIGHTS))
     (folder / "mine.txt").write_text("name: Mine\n\n.rrrrrrrrr.\n")
     (folder / "wrong.txt").write_text("name: Wrong\n\n.rkrrrrrrr.\n")
-    return folder
-
-
-@pytest.fixture(scope="module")
-def answers(folder: Path) -> Iterator[dict[str, "Future[Answer]"]]:
-    """The answers to all calls, which are typed into two terminals."""
     # What the first call compiles or caches is not what the others are measured for.
     typed("levels --png x.png spiral", folder)
-    with ThreadPoolExecutor(2) as pool:
-        calls = [*CALLS, *(BLIND if LINUX else ())]
-        yield {call: pool.submit(typed, call, folder) for call in calls}
+    return folder
 
 
 def check(answer: Answer, words: str) -> None:
@@ -241,17 +232,15 @@ def test_there_are_sixty() -> None:
 
 
 @pytest.mark.parametrize("call", CALLS)
-def test_a_wrong_call_gets_a_sentence(call: str, answers: dict[str, "Future[Answer]"]) -> None:
-    check(answers[call].result(), CALLS[call])
+def test_a_wrong_call_gets_a_sentence(call: str, folder: Path) -> None:
+    check(typed(call, folder), CALLS[call])
 
 
 @pytest.mark.skipif(not LINUX, reason="there is always a display")
 @pytest.mark.parametrize("call", BLIND)
-def test_without_a_display_it_says_what_works(
-    call: str, answers: dict[str, "Future[Answer]"]
-) -> None:
+def test_without_a_display_it_says_what_works(call: str, folder: Path) -> None:
     """A window opened that nobody could see, and the game went on for ever."""
-    check(answers[call].result(), BLIND[call])
+    check(typed(call, folder), BLIND[call])
 
 
 @pytest.mark.skipif(not LINUX, reason="there is always a display")

@@ -1,9 +1,11 @@
 """Runs entries on an AArch64 processor, which QEMU plays.
 
 Their code is what Numba makes of them for this processor, turned to the other one by LLVM, as Numba
-itself would on a machine that has it.
+itself would on a machine that has it. The program is kept with the machine code of kernels, for as
+long as no source changes.
 """
 
+import hashlib
 import importlib.util
 import os
 import shutil
@@ -18,6 +20,7 @@ import llvmlite.binding as llvm
 import pytest
 from arkanoid.physics.kernels.portable import Entry
 from arkanoid.physics.kernels.portable.entries import compile_entries
+from arkanoid.physics.kernels.portable.kept import Product, make_once
 from arkanoid.physics.kernels.portable.retarget import retarget
 from arkanoid.physics.kernels.portable.wasm import FREE_FROM
 
@@ -25,6 +28,11 @@ from arkanoid.physics.kernels.portable.wasm import FREE_FROM
 REQUIRED = "ARKANOID_TESTS_NEED_QEMU"
 FIRST = FREE_FROM  # so that images for browsers are of use
 SIZE = 1 << 24
+_SOURCE = Path(__file__).with_name("program.c")
+_OWN = hashlib.sha256(Path(__file__).read_bytes() + _SOURCE.read_bytes()).hexdigest()[:16]
+_ARM = Product(
+    f"arm-{_OWN}", "AArch64", b"ARKAARM\0", 1, ("afresh.py", "entries.py", "retarget.py")
+)
 _TRIPLE = "aarch64-unknown-linux-gnu"
 _CALL, _PUT, _GET = range(3)
 _ROW = struct.Struct("<4q")
@@ -69,17 +77,28 @@ class ArmMachine:
 
 
 def make_program(entries: Sequence[Entry], folder: Path) -> Path:
-    """Return the program that runs entries; skip the test where QEMU or the compiler is missing."""
+    """Return the program that runs entries; skip the test where QEMU or the compiler is missing.
+
+    Args:
+        entries: all of one file.
+        folder: in which the program and its parts are written.
+    """
     _qemu()
     if importlib.util.find_spec("ziglang") is None:
         _miss("no compiler here: the package ziglang is missing")
-    compiled, program = folder / "entries.o", folder / "program"
-    compiled.write_bytes(_assemble(compile_entries(entries), entries))
-    source = Path(__file__).with_name("program.c")
-    command = [sys.executable, "-m", "ziglang", "cc", *_LINK, str(source), str(compiled)]
-    kept = {f"ZIG_{kind}_CACHE_DIR": str(folder / "zig") for kind in ("GLOBAL", "LOCAL")}
-    subprocess.run([*command, "-o", str(program)], env=os.environ | kept, check=True)
+    program = folder / "program"
+    program.write_bytes(make_once(_ARM, entries, lambda: _make(entries, folder)))
+    program.chmod(0o755)
     return program
+
+
+def _make(entries: Sequence[Entry], folder: Path) -> bytes:
+    compiled, linked = folder / "entries.o", folder / "linked"
+    compiled.write_bytes(_assemble(compile_entries(entries), entries))
+    command = [sys.executable, "-m", "ziglang", "cc", *_LINK, str(_SOURCE), str(compiled)]
+    kept = {f"ZIG_{kind}_CACHE_DIR": str(folder / "zig") for kind in ("GLOBAL", "LOCAL")}
+    subprocess.run([*command, "-o", str(linked)], env=os.environ | kept, check=True)
+    return linked.read_bytes()
 
 
 def _qemu() -> str:

@@ -8,6 +8,16 @@ from arkanoid.physics import kernels
 from helpers.scratch_package import Scratch
 from numba.core.errors import NumbaError
 
+# A kernel of a part that has a name.
+PEN = """
+from ...physics.callee import scaled
+from ...physics.kernels import kernel
+
+@kernel
+def thick(x):
+    return scaled(x) + 1.0
+"""
+
 
 def test_interpreted_is_the_function_itself(scratch: Scratch) -> None:
     program = """
@@ -139,8 +149,12 @@ def test_a_kernel_that_allocates_does_not_compile() -> None:
         kernels.kernel(looks)(np.arange(3.0))
 
 
-def test_wait_is_announced_once(scratch: Scratch) -> None:
-    cold = scratch.run()
+def test_wait_is_announced_once_and_says_for_what(scratch: Scratch) -> None:
+    scratch.write("arkanoid/envs/draw/__init__.py", "")
+    scratch.write("arkanoid/envs/draw/pen.py", PEN)
+    program = "from arkanoid.envs.draw.pen import thick; report(thick(10.0))"
+    cold = scratch.run(program)
+    assert sorted(cold.compiled) == ["scaled", "thick"]
     assert len(cold.stderr.splitlines()) == 1
-    assert cold.stderr.startswith("arkanoid: compiling kernels")
-    assert scratch.run().stderr == ""
+    assert cold.stderr.startswith("arkanoid: compiling kernels of pictures (once")
+    assert scratch.run(program).stderr == ""
