@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from helpers.processes import PATIENCE
 from helpers.repository import ROOT
 
 MAKE = shutil.which("gmake") or shutil.which("make")
@@ -63,7 +64,7 @@ class Machine:
             env={"PATH": str(self.bin), "CALLS": str(self.calls)},
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=PATIENCE,
         )
 
     def called(self) -> list[str]:

@@ -10,12 +10,11 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from helpers.processes import ARKANOID
+from helpers.processes import ARKANOID, PATIENCE, wait_for
 from helpers.repository import ROOT
 from helpers.runs import SMALL
 
@@ -25,7 +24,6 @@ if sys.platform == "win32":
 TINY = " ".join(f"--{key} '{value}'" for key, value in SMALL.items())
 SCRIPT = Path(sys.executable).with_name("arkanoid")
 START = str(SCRIPT) if SCRIPT.exists() else " ".join(ARKANOID)
-PATIENCE = 120.0  # seconds
 
 
 class Student:
@@ -63,9 +61,7 @@ class Student:
             stderr=subprocess.STDOUT,
             encoding="utf-8",
         )
-        deadline = time.monotonic() + PATIENCE
-        while not when() and running.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.05)
+        wait_for(when, running)
         running.send_signal(signal.SIGINT)
         self.said, _ = running.communicate(timeout=PATIENCE)
         assert running.returncode == 130, self.said

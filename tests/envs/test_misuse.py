@@ -218,7 +218,6 @@ for levels in ("seeds:0-99", "warden"):
         batch.step()
         assert np.isfinite(batch.outcomes["reward"]).all()
 """,
-        timeout=120.0,
     )
 
 

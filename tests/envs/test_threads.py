@@ -71,7 +71,6 @@ env.close()
 batch.close()
 """,
         warnings="default",
-        timeout=200.0,
     )
 
 
@@ -117,7 +116,6 @@ step(env)
 env.close()
 """,
         warnings="default",
-        timeout=200.0,
     )
 
 
@@ -178,11 +176,10 @@ assert came > 20
 steps = []
 thread = threading.Thread(target=lambda: steps.append(env.step(actions)))
 thread.start()
-thread.join(30)
+thread.join(60)
 assert len(steps) == 1
 env.close()
 """,
-        timeout=100.0,
     )
 
 

@@ -9,6 +9,9 @@ from typing import Any
 
 import pytest
 
+from .processes import PATIENCE
+from .slow_pages import slow_down
+
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 # Where it is set, as by `.ci/run`, tests fail that find no browser; elsewhere they are skipped.
 REQUIRED = "ARKANOID_TESTS_NEED_BROWSER"
@@ -16,7 +19,6 @@ FLAGS = (
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update"),
 )
-PATIENCE = 60  # seconds
 DESKTOP: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}}
 PHONE: dict[str, Any] = {
     "viewport": {"width": 390, "height": 844},
@@ -38,11 +40,26 @@ def run_browser() -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
+        browser = playwright.chromium.launch(
+            executable_path=path, args=list(FLAGS), timeout=1000 * PATIENCE
+        )
         try:
             yield browser
         finally:
             browser.close()
+
+
+@contextmanager
+def open_page(browser: Any, **context: Any) -> Iterator[Any]:
+    """Open an empty page, in a context of its own; `context` is how it is shown."""
+    opened = browser.new_context(**context)
+    opened.set_default_timeout(1000 * PATIENCE)
+    try:
+        page = opened.new_page()
+        slow_down(page)
+        yield page
+    finally:
+        opened.close()
 
 
 @contextmanager
@@ -56,18 +73,14 @@ def visit(browser: Any, address: str, asks: Sequence[str] = (), **context: Any) 
         context: how it is shown, such as `PHONE`.
     """
     faults: list[str] = []
-    opened = browser.new_context(**context)
-    page = opened.new_page()
-    page.on("console", lambda message: faults.append(message.text))
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.on("request", lambda request: _note(request.url, address, asks, faults))
-    try:
+    with open_page(browser, **context) as page:
+        page.on("console", lambda message: faults.append(message.text))
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("request", lambda request: _note(request.url, address, asks, faults))
         page.goto(address)
         wait_until(page, "globalThis.arkanoid")
         yield page
         assert faults == []
-    finally:
-        opened.close()
 
 
 def wait_until(page: Any, condition: str) -> None:
@@ -81,6 +94,21 @@ def wait_until(page: Any, condition: str) -> None:
     while not page.evaluate(f"() => {{ {names}; return Boolean({condition}); }}"):
         assert time.monotonic() < deadline, condition
         page.wait_for_timeout(20)
+
+
+def pass_time(page: Any, milliseconds: int) -> None:
+    """Let time pass by the page's own clock.
+
+    However slow the machine is, what the page's timers were to do until then is done. Playwright's
+    own `wait_for_timeout` waits outside of the page.
+    """
+    page.evaluate("(time) => new Promise((go) => setTimeout(go, time))", milliseconds)
+
+
+def pass_pictures(page: Any) -> None:
+    """Wait until the page has shown what there is now."""
+    picture = "new Promise((go) => requestAnimationFrame(go))"
+    page.evaluate(f"async () => {{ await {picture}; await {picture}; }}")
 
 
 def _note(asked: str, address: str, asks: Sequence[str], faults: list[str]) -> None:

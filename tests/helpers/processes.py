@@ -8,10 +8,14 @@ import os
 import shlex
 import subprocess
 import sys
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypedDict, Unpack
 
+# Seconds that a test waits for what must come. It is the last net: no correct program takes so long
+# on a busy machine.
+PATIENCE = 300.0
 # Changes of the environment that switch Numba's compiler off and on.
 INTERPRETED = {"NUMBA_DISABLE_JIT": "1"}
 COMPILED = {"NUMBA_DISABLE_JIT": "0"}
@@ -25,7 +29,7 @@ class Options(TypedDict, total=False):
     status: int | None  # the exit status to expect, 0 by default; None accepts any
     changes: Mapping[str, str]  # environment variables to set, beside those of this process
     cwd: str | Path  # the folder to run in
-    timeout: float  # seconds after which the program is killed and the test fails; 300 by default
+    timeout: float  # seconds; then the program is killed and the test fails. PATIENCE by default
     encoding: str  # in which a Python program writes and its output is read; UTF-8 by default
 
 
@@ -42,7 +46,7 @@ def run(*command: str | Path, **options: Unpack[Options]) -> subprocess.Complete
         capture_output=True,
         encoding=encoding,
         errors="replace",
-        timeout=options.get("timeout", 300.0),
+        timeout=options.get("timeout", PATIENCE),
     )
     assert status is None or done.returncode == status, (
         f"exit status {done.returncode} instead of {status}: {shlex.join(words)}\n"
@@ -73,6 +77,15 @@ def run_arkanoid(
 ) -> subprocess.CompletedProcess[str]:
     """Run the command `arkanoid` with arguments. Warnings are shown, and are no errors."""
     return run(*ARKANOID, *arguments, **options)
+
+
+def wait_for(condition: Callable[[], object], process: subprocess.Popen[str] | None = None) -> None:
+    """Wait until a condition holds; a process, if one is given, must run until then."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert process is None or process.poll() is None, process.communicate()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
 
 
 def start_arkanoid(

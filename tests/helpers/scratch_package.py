@@ -103,7 +103,6 @@ class Scratch:
             *(sys.executable, "-c", PRELUDE + program),
             cwd=self.code,
             changes={**settings, **environment},
-            timeout=120,
         )
         return Outcome(*json.loads(done.stdout), done.stderr)
 

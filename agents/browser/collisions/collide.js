@@ -44,7 +44,9 @@ export class Collide {
   }
 
   async enter() {
+    const turn = (this._turn = Symbol());
     this.meeting ??= await this.app.arkanoid.meeting();
+    if (this._turn !== turn) return; // one came again meanwhile
     const scene = readScene(location.hash);
     Object.assign(this.bodies, scene);
     // One comes back.

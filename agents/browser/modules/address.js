@@ -11,7 +11,9 @@ export class Address {
   /** Write what there is after a while without changes. */
   later() {
     clearTimeout(this._later);
-    this._later = setTimeout(() => this.now(), SETTLED);
+    const { hash } = location;
+    // Another address was asked for, if it differs then: the page may hear of that later.
+    this._later = setTimeout(() => location.hash === hash && this.now(), SETTLED);
   }
 
   /** Write what there is. */

@@ -58,7 +58,7 @@ class App {
 
   /** Play a level of the editor. */
   async playLevel(level) {
-    await this._go("play");
+    if (!(await this._go("play"))) return;
     this.part.offer(level);
     this.stage.focus();
   }
@@ -68,9 +68,16 @@ class App {
     document.getElementById("said").textContent = text;
   }
 
-  /** Show a part of the page. */
-  async show(name) {
+  /** Show a part of the page. @returns {Promise<boolean>} false: the user has gone on meanwhile */
+  show(name) {
+    return (this._shown = this._show(name));
+  }
+
+  async _show(name) {
+    const turn = (this._turn = Symbol());
+    this.open = false;
     this.part?.leave();
+    this.stage.say({}); // the buttons there were of the part before
     for (const panel of document.querySelectorAll(".panel")) {
       panel.hidden = panel.id !== `panel-${name}`;
     }
@@ -86,16 +93,18 @@ class App {
     for (const scene of document.querySelectorAll(".scene")) {
       scene.hidden = scene.id !== `scene-${part.scene}`;
     }
-    // A scene that is not open yet has nothing that one could change.
-    const places = part.scene ? document.querySelectorAll(`#panel-${name}, #scene-${name}`) : [];
+    // A part that is not open yet has nothing that one could change.
+    const places = document.querySelectorAll(`#panel-${name}, #scene-${name}`);
     for (const place of places) place.inert = true;
     await part.enter();
+    if (this._turn !== turn) return false;
     for (const place of places) place.inert = false;
-    if (this.part !== part) return; // another one was asked for meanwhile
+    this.open = true;
     this.stage.sheet();
     document.querySelector(".bar").hidden = Boolean(part.still);
     this.stage.offerStrip(part.steers !== null);
     this.stage.stale = true;
+    return true;
   }
 
   /** React to a key that has a meaning. */
@@ -103,7 +112,7 @@ class App {
     if (key === "faster" || key === "slower") this.clock.change(key === "faster" ? 1 : -1);
     else if (key === "full") this.stage.fillScreen();
     else if (key === "sound") this._switchSound();
-    else this.part?.press(key);
+    else if (this.open) this.part.press(key);
   }
 
   /** Listen to everything, and begin to show pictures. */
@@ -151,7 +160,7 @@ class App {
 
   _listen() {
     addEventListener("hashchange", async () => {
-      await this.show(partOf(location.hash));
+      if (!(await this.show(partOf(location.hash)))) return;
       (this.part.scene ? this.part : this.stage).focus();
     });
     // Who points at things needs no ring around the field; who goes on by Tab does.
@@ -185,13 +194,13 @@ class App {
     this.stage.listen({
       press: (key) => {
         this._held.set("pointer", key);
-        this.part?.press(key);
+        if (this.open) this.part.press(key);
       },
       release: (key) => {
         this._held.set("pointer", key);
         this._release("pointer");
       },
-      point: (...where) => this.part?.point(...where),
+      point: (...where) => this.open && this.part.point(...where),
     });
   }
 
@@ -207,15 +216,15 @@ class App {
     event.preventDefault();
     const [file] = event.dataTransfer.files;
     if (!file) return;
-    await this._go(file.name.toLowerCase().endsWith(".txt") ? "editor" : "replay");
-    await this.part.dropped(file);
+    const name = file.name.toLowerCase().endsWith(".txt") ? "editor" : "replay";
+    if (await this._go(name)) await this.part.dropped(file);
   }
 
-  /** Go to a part of the page. */
-  async _go(name) {
-    if (this.part === this._parts[name]) return;
+  /** Go to a part of the page; return as `show` does. */
+  _go(name) {
+    if (this.part === this._parts[name]) return this._shown;
     history.pushState(null, "", `#${name}`);
-    await this.show(name);
+    return this.show(name);
   }
 
   /** @returns {string | undefined} what a key means where the focus is */

@@ -41,6 +41,7 @@ export class Trials {
     // The agent of a run that is followed changes.
     if (network !== this._known) this._agent = new Agent(await this._arkanoid.open(opened), network);
     this._known = network;
+    if (this._turn !== turn) return true;
     while (outcome.played < count) {
       const game = this._play(level);
       while (!game.next().done) {

@@ -108,26 +108,31 @@ export class Viewer {
   }
 
   async _take(file) {
+    const turn = (this._turn = Symbol());
     this._forget();
     try {
       if (file.size > MOST_BYTES) throw new Error("the file is too large for a replay");
       const bytes = new Uint8Array(await file.arrayBuffer());
-      await this._begin(await Replay.fromBytes(bytes, this._blank), file.name);
+      await this._begin(await Replay.fromBytes(bytes, this._blank), file.name, turn);
     } catch (error) {
-      this._tell(file.name, `${sentence(reason(error))}.`, false);
+      if (this._turn === turn) this._tell(file.name, `${sentence(reason(error))}.`, false);
     }
   }
 
-  /** Begin to verify a replay. */
-  async _begin(replay, name) {
+  /** Begin to verify a replay, unless another one was asked for meanwhile. */
+  async _begin(replay, name, turn = (this._turn = Symbol())) {
+    if (this._turn !== turn) return;
     this._forget();
     const { arkanoid, stage } = this.app;
+    let game;
     try {
-      this._game = await replay.open(arkanoid);
+      game = await replay.open(arkanoid);
     } catch (error) {
-      this._tell(name, `${sentence(reason(error))}.`, false);
+      if (this._turn === turn) this._tell(name, `${sentence(reason(error))}.`, false);
       return;
     }
+    if (this._turn !== turn) return;
+    this._game = game;
     this._replay = replay;
     this._name = name;
     this._apart = Math.max(LEAST_APART, Math.ceil(replay.length / MOST_SNAPSHOTS));

@@ -77,8 +77,8 @@ export class Watch {
     this._showTraining();
     const { name, game: played } = this._form.choice;
     if (name !== this.app.following.name || this.phase === "opening") return;
-    const network = await this.app.network(name);
     const turn = this._turn;
+    const network = await this.app.network(name);
     if (!network || network === this._networks[name]) return;
     if (this.phase === "waiting") {
       await this._layOut();

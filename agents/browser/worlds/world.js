@@ -47,7 +47,7 @@ export class World {
     const turn = (this._turn = Symbol());
     this._sandbox ??= this.app.arkanoid.sandbox();
     const sandbox = await this._sandbox;
-    if (this._turn !== turn) return; // one came again meanwhile
+    if (this._turn !== turn) return; // one went away meanwhile, and may have come again
     this.live ??= new Live(sandbox);
     const scene = this.things.readScene(location.hash);
     if (scene) this.load(scene);
@@ -57,7 +57,7 @@ export class World {
     this._due = 0;
     this._then = undefined;
     const picture = (now) => {
-      if (this.app.part !== this || this._turn !== turn) return;
+      if (this._turn !== turn) return;
       requestAnimationFrame(picture);
       this._picture(now);
     };
@@ -66,6 +66,7 @@ export class World {
   }
 
   leave() {
+    this._turn = null;
     this.hand.cancel();
     this._address.leave();
   }
@@ -192,7 +193,7 @@ export class World {
   /** Show a body in the form; undefined: what is thrown in next. */
   choose(handle) {
     this.chosen = handle;
-    this._changed = undefined;
+    this._changed = this._followed = undefined;
     this._showChosen();
   }
 

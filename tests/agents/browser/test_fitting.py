@@ -30,7 +30,7 @@ TOO_FAR = """() => {
 def go_to(page: Any, part: str) -> None:
     """Show a part of the page, with all that it can unfold."""
     page.evaluate("part => { location.hash = part; }", part)
-    wait_until(page, f"arkanoid._parts.{part} && part === arkanoid._parts.{part}")
+    wait_until(page, f"part === arkanoid._parts.{part} && arkanoid.open")
     page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
 
 

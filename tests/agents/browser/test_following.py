@@ -11,6 +11,7 @@ from arkanoid.agents.browser import following
 from arkanoid.agents.browser.following import FollowedRun
 from arkanoid.agents.browser.levels import asked_levels
 from arkanoid.agents.browser.server import PageServer
+from arkanoid.agents.experiment import runs
 from arkanoid.agents.experiment.errors import SettingsError
 from arkanoid.agents.experiment.runs import ModelFile, RunFolder
 from arkanoid.agents.experiment.settings import Experiment
@@ -18,6 +19,7 @@ from arkanoid.agents.learn.portable import portable_network
 from arkanoid.agents.learn.training import train
 from arkanoid.envs.browser import shipped
 from filelock import FileLock
+from helpers.processes import PATIENCE
 from helpers.runs import sentence, small
 
 VALIDATED = {"validation.every": "1024", "validation.levels": '["seeds:0-1"]'}
@@ -192,9 +194,12 @@ def test_a_folder_that_is_deleted(run: RunFolder) -> None:
     assert followed.network() == network
 
 
-def test_looking_does_not_keep_a_training_from_its_run(run: RunFolder) -> None:
+def test_looking_does_not_keep_a_training_from_its_run(
+    run: RunFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Who looks holds the lock for a moment; a training that began then was refused."""
     assert not run.is_trained()
+    monkeypatch.setattr(runs, "_A_LOOK", PATIENCE)
     look = FileLock(run.path / "lock", thread_local=False)
     look.acquire()
     end = threading.Timer(0.2, look.release)
@@ -283,6 +288,5 @@ def test_a_slow_look_does_not_stop_the_news(
     """The first one loads libraries: no news came for a minute then."""
     monkeypatch.setattr(following, "_SHARE", 10**9)
     followed = follow(run)
-    before = following.time.monotonic()
     followed.news()
-    assert followed._due - before < 60
+    assert followed._due - following.time.monotonic() < 60

@@ -18,7 +18,7 @@ from arkanoid.envs.browser.manifest import browser_games
 from arkanoid.envs.config import Config
 from arkanoid.envs.rules import RULES_VERSION
 from arkanoid.physics.kernels.sealed import seal
-from helpers.browser import wait_until
+from helpers.browser import pass_time, wait_until
 from helpers.repository import TESTS
 
 DROP = """([name, text]) => {
@@ -59,7 +59,8 @@ def verdict(page: Any) -> str:
 def test_a_game_of_the_page_plays_in_python(page: Any, tmp_path: Path) -> None:
     page.keyboard.press("Space")
     page.keyboard.down("ArrowRight")
-    wait_until(page, "world.decisions > 90")
+    before = page.evaluate("arkanoid.part.game.world.decisions")
+    wait_until(page, f"world.decisions > {before + 90}")
     page.keyboard.up("ArrowRight")
     page.keyboard.press("p")
     with page.expect_download() as download:
@@ -75,7 +76,7 @@ def test_a_game_of_python_plays_in_the_page(page: Any, recorded: bytes) -> None:
     """Dropped anywhere, verified, and shown from any time on, with the same states."""
     drop(page, "python.replay", recorded)
     assert verdict(page).startswith("The same game: all ")
-    page.keyboard.press("p")
+    page.evaluate("arkanoid.part.leave()")  # it pauses
     length = page.evaluate("arkanoid.part._replay.length")
     assert length == len(Replay.from_bytes(recorded).commands)
     states = {}
@@ -118,6 +119,41 @@ def test_a_game_without_a_decision(page: Any) -> None:
     page.keyboard.press("ArrowRight")
     page.keyboard.press(".")
     wait_until(page, "!arkanoid.stage.stale")
+
+
+def test_the_file_that_was_dropped_last_is_shown(page: Any, recorded: bytes) -> None:
+    """A larger one, dropped before, took its place as soon as it was read."""
+    page.evaluate("""() => {
+      const { arrayBuffer: read } = File.prototype;
+      const { promise, resolve } = Promise.withResolvers();
+      globalThis.goOn = resolve;
+      File.prototype.arrayBuffer = async function () {
+        if (this.name !== "last.replay") await promise;
+        return read.call(this);
+      };
+    }""")
+    for name, content in {"none": b"", "first": recorded, "last": recorded}.items():
+        drop(page, f"{name}.replay", content)
+    assert verdict(page).startswith("The same game: all ")
+    page.evaluate("goOn()")
+    pass_time(page, 100)
+    assert verdict(page).startswith("The same game: all ")
+    assert page.locator("#replay-name").text_content() == "last.replay"
+
+
+def test_a_file_before_there_is_a_place_for_it(page: Any, recorded: bytes) -> None:
+    """A second one, dropped while replays were being opened, was called damaged."""
+    page.evaluate("""() => {
+      const { arkanoid: kernels } = arkanoid;
+      const open = kernels.open.bind(kernels);
+      const { promise, resolve } = Promise.withResolvers();
+      globalThis.goOn = resolve;
+      kernels.open = async (...given) => { await promise; return open(...given); };
+    }""")
+    for name in ("first.replay", "second.replay"):
+        drop(page, name, recorded)
+    page.evaluate("goOn()")
+    assert verdict(page).startswith("The same game: all ")
 
 
 def test_any_configuration_can_be_seen(page: Any) -> None:

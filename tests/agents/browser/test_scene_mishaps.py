@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from helpers.browser import DESKTOP, PHONE, visit, wait_until
+from helpers.browser import DESKTOP, PHONE, pass_pictures, pass_time, visit, wait_until
 
 STILL = "#world?gravity=5&b=Particle,-4,0,0,0,1&b=AxisAlignedRectangle,4,0,0,0,2,2"
 APART = "#collide?a=Particle,-3,0,2,0&b=Particle,3,0"
@@ -24,12 +24,6 @@ PICTURES = """async () => {
   requestAnimationFrame(count);
   await promise;
   return painted / pictures;
-}"""
-SLOWLY = """([name, part]) => {
-  const { arkanoid: game } = arkanoid;
-  const open = game[name].bind(game);
-  game[name] = async () => { await new Promise((go) => setTimeout(go, 700)); return open(); };
-  location.hash = part;
 }"""
 
 
@@ -92,7 +86,7 @@ def test_leaving_right_after_a_change(world: Any) -> None:
     """The address became that of the world, and the page showed the game."""
     world.evaluate("arkanoid.part.remove(arkanoid.part.choose(0)); location.hash = '#play'")
     wait_until(world, "part?.phase === 'ready'")
-    world.wait_for_timeout(400)
+    pass_time(world, 400)
     assert world.evaluate("location.hash") == "#play"
 
 
@@ -101,7 +95,7 @@ def test_a_link_right_after_a_change(world: Any) -> None:
     throw(world)
     world.evaluate("document.querySelector('#world-scenes a[data-scene=pile]').click()")
     wait_until(world, "part._start.name === 'pile'")
-    world.wait_for_timeout(400)
+    pass_time(world, 400)
     assert world.evaluate("location.hash") == "#world?scene=pile"
 
 
@@ -157,7 +151,7 @@ def test_bodies_with_such_numbers(browser: Any, file: Path, number: str) -> None
         wait_until(page, "part.live?.sandbox.record.time > 0.05 || !part.runs")
         for row in range(len(things(page))):
             page.evaluate(f"arkanoid.part.choose({row})")
-            page.wait_for_timeout(120)
+            pass_pictures(page)
             shown = page.inner_text("main")
             assert not re.search("NaN|null|undefined|Infinity", shown), shown
         sides = "&".join(f"{side}=Convex,{numbers}" for side in "ab")
@@ -185,31 +179,10 @@ def test_coming_back_to_a_collision(browser: Any, file: Path) -> None:
     with visit(browser, file.as_uri() + APART, **DESKTOP) as page:
         page.evaluate("arkanoid.part.change('a', { x: -2 }); location.hash = '#play'")
         wait_until(page, "part?.phase === 'ready'")
-        page.wait_for_timeout(400)
+        pass_time(page, 400)
         assert page.evaluate("location.hash") == "#play"
         page.get_by_role("link", name="Collide").click()
         wait_until(page, "location.hash.startsWith('#collide?a=Particle,-2,0')")
-
-
-@pytest.mark.parametrize("part", ["world", "collide"])
-def test_a_part_that_opens_slowly(browser: Any, file: Path, part: str) -> None:
-    """Its buttons and fields failed; left and opened again meanwhile, the world was empty."""
-    with visit(browser, file.as_uri(), **DESKTOP) as page:
-        kernels = {"world": "sandbox", "collide": "meeting"}[part]
-        page.evaluate(SLOWLY, [kernels, f"#{part}"])
-        wait_until(page, f"part?.scene === '{part}'")
-        for button in page.locator(f"#scene-{part} button:visible").all():
-            box = button.bounding_box()
-            page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-        page.evaluate("location.hash = '#play'")
-        wait_until(page, "!part.scene")
-        page.evaluate(f"location.hash = '#{part}'")
-        page.wait_for_timeout(1600)
-        if part == "world":
-            assert len(things(page)) > 5
-        else:
-            assert page.locator("#collisions .regions :is(polygon, circle)").count() == 2
-        page.locator(f"#panel-{part}").get_by_label("mass").first.click(trial=True)
 
 
 @pytest.mark.parametrize("part", ["world", "collide"])

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import re
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arkanoid.physics.scenes.ready import SCENES, Thing, make_world, text_of
-from helpers.browser import DESKTOP, PHONE, visit, wait_until
+from helpers.browser import DESKTOP, PHONE, pass_pictures, visit, wait_until
 from helpers.repository import ROOT
 
 STILL = "#world?gravity=0&b=Particle,-4,0,0,0,1&b=AxisAlignedRectangle,4,0,0,0,2,2"
@@ -48,6 +49,19 @@ def drag(page: Any, start: tuple[float, float], end: tuple[float, float]) -> Non
     page.mouse.down()
     page.mouse.move(*pixel(page, *end), steps=6)
     page.mouse.up()
+
+
+def fling(page: Any, start: tuple[float, float], end: tuple[float, float], seconds: float) -> None:
+    """Drag evenly, and let go while the pointer moves, however long that takes here."""
+    mouse, count, began = page.context.new_cdp_session(page), 10, time.time()
+    page.mouse.move(*pixel(page, *start))
+    for number in range(count + 2):
+        part = min(1.0, number / count)
+        x, y = pixel(page, *(a + part * (b - a) for a, b in zip(start, end, strict=True)))
+        kind = {0: "mousePressed", count + 1: "mouseReleased"}.get(number, "mouseMoved")
+        event = {"type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1}
+        when = {"timestamp": began + part * seconds}
+        mouse.send("Input.dispatchMouseEvent", event | when)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -127,13 +141,10 @@ def test_dragging_and_flinging(world: Any) -> None:
     assert (moved.x, moved.y) == pytest.approx((-6, 3), abs=0.05)
     assert (moved.vx, moved.vy) == (0, 0)
     world.click("#world-pause")
-    world.mouse.move(*pixel(world, -6, 3))
-    world.mouse.down()
-    world.mouse.move(*pixel(world, -1, 3), steps=10)
-    world.mouse.up()
+    fling(world, (-6, 3), (-1, 3), seconds=0.2)
     flung = things(world)[0]
-    assert flung.vx > 3
-    assert abs(flung.vy) < 2
+    assert flung.vx == pytest.approx(25, rel=0.05)
+    assert abs(flung.vy) < 0.1
 
 
 def test_the_arrow_of_a_chosen_body(world: Any) -> None:
@@ -229,6 +240,7 @@ def test_the_lines_of_python(browser: Any, file: Path, name: str) -> None:
     with open_world(browser, file, f"#world?scene={name}") as page:
         wait_until(page, "part.live")
         page.click("#world-python summary")
+        wait_until(page, "document.querySelector('#world-python pre').textContent")
         program = page.locator("#world-python pre").text_content()
     assert all(len(line) <= 100 for line in program.splitlines())
     names: dict[str, Any] = {}
@@ -289,15 +301,17 @@ def test_the_lamp_by_keyboard(browser: Any, file: Path) -> None:
         wait_until(page, "part.live && !part.runs")
         press = page.keyboard.press
         page.locator("#world-picture").focus()
+        pass_pictures(page)
         before = page.locator("#world-picture").screenshot()
         press("Tab")
-        page.wait_for_timeout(100)
+        pass_pictures(page)
         assert page.locator("#world-picture").screenshot() != before
         assert focused(page) == ("group", "Lamp at 0, 0")
         press("ArrowLeft")
         press("Shift+ArrowUp")
         assert page.evaluate("arkanoid.part.lamp") == [-0.1, 1]
         wait_until(page, "location.hash.includes('lamp=-0.1,1')")
+        pass_pictures(page)
         assert focused(page) == ("group", "Lamp at −0.1, 1")
         for _ in range(12):
             press("Shift+ArrowUp")

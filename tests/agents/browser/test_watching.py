@@ -6,7 +6,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -20,8 +19,8 @@ from arkanoid.agents.experiment.runs import ModelFile
 from arkanoid.agents.show.page import as_html
 from arkanoid.agents.show.report import show_alive
 from arkanoid.envs.browser import shipped
-from helpers.browser import DESKTOP, PATIENCE, visit, wait_until
-from helpers.processes import ARKANOID
+from helpers.browser import DESKTOP, open_page, visit, wait_until
+from helpers.processes import ARKANOID, PATIENCE, wait_for
 from helpers.runs import facts_with, packaged_copy, sentence
 
 # A whole game, decision by decision and tick by tick: what it looks like in the end.
@@ -60,7 +59,7 @@ def address(folder: Path) -> Iterator[str]:
     assert process.stdout is not None
     yield process.stdout.readline().split()[0]
     process.send_signal(signal.SIGTERM if os.name == "nt" else signal.SIGINT)
-    process.communicate(timeout=60)
+    process.communicate(timeout=PATIENCE)
     assert os.name == "nt" or process.returncode == 0  # nothing went wrong
 
 
@@ -82,7 +81,7 @@ def test_a_browser_that_keeps_the_command_waiting(tmp_path: Path) -> None:
     script, loaded = tmp_path / "browser.py", tmp_path / "loaded.html"
     script.write_text(
         "import sys, pathlib, urllib.request as request\n"
-        "page = request.urlopen(sys.argv[1], timeout=60).read()\n"
+        f"page = request.urlopen(sys.argv[1], timeout={PATIENCE}).read()\n"
         f"pathlib.Path({str(loaded)!r}).write_bytes(page)\n",
         encoding="utf-8",
     )
@@ -92,10 +91,7 @@ def test_a_browser_that_keeps_the_command_waiting(tmp_path: Path) -> None:
         env=os.environ | {"BROWSER": shlex.join([sys.executable, str(script), "%s"])},
     )
     try:
-        deadline = time.monotonic() + PATIENCE
-        while not loaded.exists() and time.monotonic() < deadline:
-            time.sleep(0.1)
-        assert loaded.exists()
+        wait_for(loaded.exists)
     finally:
         process.kill()
         process.communicate()
@@ -131,7 +127,7 @@ def test_the_paddle_is_taken_and_handed_back(page: Any) -> None:
     wait_until(page, "world.decisions > 0")
     page.keyboard.down("ArrowLeft")
     assert button.text_content() == "Hand back"
-    wait_until(page, "world.paddle_vx < 0")
+    wait_until(page, "world.paddle_x - world.paddle_half < 0.01")
     page.keyboard.up("ArrowLeft")
     page.keyboard.press("t")
     assert button.text_content() == "Take over"
@@ -173,18 +169,17 @@ def test_a_report_shows_its_agent_at_play(browser: Any, folder: Path) -> None:
     report = as_html(facts_with("lite"), {"x.png": b"", "play.gif": b""}, alive)
     file.write_text(report, encoding="utf-8")
     faults: list[str] = []
-    page = browser.new_page()
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.goto(file.as_uri())
-    # What nobody sees stands still.
-    page.locator("iframe").scroll_into_view_if_needed()
-    inside = page.frame_locator("iframe")
-    inside.locator("#chances .chosen").wait_for()
-    assert inside.locator("#panel-watch .choice label").all_text_contents() == ["lite"]
-    inside.get_by_role("button", name="Take over").click()
-    inside.get_by_role("button", name="Hand back").wait_for()
+    with open_page(browser) as page:
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto(file.as_uri())
+        # What nobody sees stands still.
+        page.locator("iframe").scroll_into_view_if_needed()
+        inside = page.frame_locator("iframe")
+        inside.locator("#chances .chosen").wait_for()
+        assert inside.locator("#panel-watch .choice label").all_text_contents() == ["lite"]
+        inside.get_by_role("button", name="Take over").click()
+        inside.get_by_role("button", name="Hand back").wait_for()
     assert faults == []
-    page.close()
 
 
 def test_a_port_that_is_taken(address: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,8 +2,6 @@
 
 import json
 import signal
-import subprocess
-import time
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +12,7 @@ from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.learn.curves import STEP, CurveWriter, read_curve
 from arkanoid.agents.learn.training import train
-from helpers.processes import run_arkanoid, start_arkanoid
+from helpers.processes import run_arkanoid, run_program
 from helpers.runs import small
 
 # Everything that has a state is in use: a schedule, a curriculum, validation, generated levels and
@@ -48,18 +46,29 @@ def words(output: Path, **changes: str) -> list[str]:
     return ["train", "quick", *(f"--{key}={value}" for key, value in settings.items())]
 
 
-def stop_at(process: subprocess.Popen[str], output: Path, timesteps: int, how: int) -> RunFolder:
-    """Send a signal to a training after so many decisions, and wait for its end."""
-    deadline = time.monotonic() + 120
-    while not any(
-        read_curve(path)[-1:] and read_curve(path)[-1][STEP] >= timesteps
-        for path in output.glob("*/curve.jsonl")
-    ):
-        assert process.poll() is None, process.communicate()[1]
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    process.send_signal(how)
-    process.communicate(timeout=60)
+# A training gets a signal once it has written a line of its curves after so many decisions.
+STOPPED = """
+import os, sys
+from arkanoid.agents import cli
+from arkanoid.agents.learn.curves import CurveWriter
+
+timesteps, signal, write = int(sys.argv[1]), int(sys.argv[2]), CurveWriter.write
+
+def write_and_stop(writer, values, excluded, step=0):
+    write(writer, values, excluded, step)
+    if step >= timesteps:
+        CurveWriter.write = write
+        os.kill(os.getpid(), signal)
+
+CurveWriter.write = write_and_stop
+sys.exit(cli.main(sys.argv[3:]))
+"""
+
+
+def stop_at(output: Path, timesteps: int, how: int) -> RunFolder:
+    """Train, and send a signal to the training after so many decisions."""
+    arguments = (str(timesteps), str(int(how)), *words(output))
+    run_program(STOPPED, *arguments, warnings="default", status=None)
     (path,) = output.iterdir()
     return RunFolder(path)
 
@@ -80,7 +89,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
 def test_a_killed_and_resumed_run_equals_an_undisturbed_one(
     whole: RunFolder, tmp_path: Path
 ) -> None:
-    killed = stop_at(start_arkanoid(*words(tmp_path)), tmp_path, 5120, signal.SIGKILL)
+    killed = stop_at(tmp_path, 5120, signal.SIGKILL)
     assert killed.read_notes()["outcome"] == "unfinished"
     assert "weights" not in killed.read_notes()
     # Reports left out the time of a session that was killed, because nothing was noted about it.
@@ -104,7 +113,7 @@ def test_a_stopped_and_resumed_run_equals_an_undisturbed_one(
     whole: RunFolder, tmp_path: Path
 ) -> None:
     """It stops in the middle of a rollout, which the resumed run plays from its beginning."""
-    stopped = stop_at(start_arkanoid(*words(tmp_path)), tmp_path, 3072, signal.SIGINT)
+    stopped = stop_at(tmp_path, 3072, signal.SIGINT)
     about = stopped.read_notes()
     assert about["outcome"] == "interrupted"
     assert about["weights"] is None

@@ -5,7 +5,6 @@ import json
 import re
 import signal
 import threading
-import time
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -28,7 +27,7 @@ from arkanoid.agents.learn.curves import read_curve
 from arkanoid.agents.measure.comparison import COLUMNS
 from arkanoid.agents.measure.episodes import adapt
 from arkanoid.envs.game.random import seed_state
-from helpers.processes import run_arkanoid, run_program, start_arkanoid
+from helpers.processes import PATIENCE, run_arkanoid, run_program, start_arkanoid, wait_for
 from numpy.typing import NDArray
 from PIL import Image
 from stable_baselines3 import PPO
@@ -213,14 +212,11 @@ def test_python_dash_m_arkanoid_is_the_command(tmp_path: Path) -> None:
 def test_ctrl_c_saves_the_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["--training.timesteps", "1_000_000_000", "--output", str(tmp_path)]
     process = start_arkanoid("train", *TINY, *arguments)
-    deadline = time.monotonic() + 60
     # The training writes the first line of its curves long before its end.
-    while not any(file.stat().st_size for file in tmp_path.glob("*/curve.jsonl")):
-        assert process.poll() is None, process.communicate()[1]
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+    curves = "*/curve.jsonl"
+    wait_for(lambda: any(file.stat().st_size for file in tmp_path.glob(curves)), process)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130, err
     (folder,) = tmp_path.iterdir()
     assert str(folder / "model.zip") in out

@@ -21,7 +21,7 @@ from arkanoid.agents.learn.search.space import Parameter, SearchSpace
 from arkanoid.agents.learn.search.study import DECISIONS, open_study
 from arkanoid.agents.learn.search.trials import PRUNED, SPENT, Search, _Judge, run_trial
 from arkanoid.agents.learn.training import train
-from helpers.processes import run_arkanoid, start_arkanoid
+from helpers.processes import PATIENCE, run_arkanoid, start_arkanoid, wait_for
 from helpers.runs import sentence, small
 
 # One epoch, or sixteen: the second takes several times as long for a decision.
@@ -180,11 +180,8 @@ def two_at_once(folder: Path) -> Iterator[tuple[subprocess.Popen[str], list[int]
     process = start_arkanoid(*words, start_new_session=True)
     trials: list[int] = []
     try:
-        deadline = time.monotonic() + 200
-        while len(list((folder / "study").glob("*/checkpoint.pt"))) < 2:
-            assert process.poll() is None, process.communicate()[1]
-            assert time.monotonic() < deadline
-            time.sleep(0.1)
+        checkpoints = folder / "study"
+        wait_for(lambda: len(list(checkpoints.glob("*/checkpoint.pt"))) == 2, process)
         children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
         trials += [
             int(child)
@@ -219,7 +216,7 @@ def test_ctrl_c_ends_all_trials(tmp_path: Path, everybody: bool) -> None:
             os.killpg(process.pid, signal.SIGINT)
         else:
             process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=100)
+        _, errors = process.communicate(timeout=PATIENCE)
         assert process.returncode == 130
         assert "the same command resumes the search" in errors
         assert "Traceback" not in errors
@@ -233,7 +230,7 @@ def test_ctrl_c_ends_all_trials(tmp_path: Path, everybody: bool) -> None:
 def test_a_process_that_was_killed_ends_the_search(tmp_path: Path) -> None:
     with two_at_once(tmp_path) as (process, trials):
         os.kill(trials[0], signal.SIGKILL)
-        _, errors = process.communicate(timeout=100)
+        _, errors = process.communicate(timeout=PATIENCE)
         assert process.returncode == 2
         assert "killed by signal 9" in errors
         assert "--jobs" in errors
@@ -244,11 +241,8 @@ def test_a_process_that_was_killed_ends_the_search(tmp_path: Path) -> None:
 def test_trials_end_with_the_process_that_started_them(tmp_path: Path) -> None:
     with two_at_once(tmp_path) as (process, trials):
         process.kill()
-        process.communicate(timeout=100)
-        deadline = time.monotonic() + 30
-        while any(map(is_alive, trials)) and time.monotonic() < deadline:
-            time.sleep(0.1)
-        assert not any(map(is_alive, trials))
+        process.communicate(timeout=PATIENCE)
+        wait_for(lambda: not any(map(is_alive, trials)))
 
 
 def test_the_board_shows_lines_and_counts(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,11 +1,11 @@
 """The window, on SDL's dummy display."""
 
 import sys
-import time
 
 import gymnasium as gym
 import numpy as np
 import pytest
+from arkanoid.envs.play import window as window_module
 from arkanoid.envs.play.window import Window
 from gymnasium.error import DependencyNotInstalled
 from helpers.processes import run_program
@@ -103,26 +103,41 @@ def test_the_event_queue_does_not_run_full() -> None:
     window.close()
 
 
-def test_it_keeps_the_speed() -> None:
-    """Pictures come no faster than asked for."""
+class Clock:
+    """Time that passes only where somebody sleeps; it takes the place of the module `time`."""
+
+    now = 100.0
+
+    def perf_counter(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+
+
+def test_it_keeps_the_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures come no faster than asked for; those after a late one catch up."""
+    clock = Clock()
+    monkeypatch.setattr(window_module, "time", clock)
     window = Window("test", 50.0)
     window.show(frame())
-    start = time.perf_counter()
-    for _ in range(10):
+    for picture in range(10):
+        clock.sleep(0.03 if picture == 4 else 0.005)
         window.show(frame())
-    assert time.perf_counter() - start >= 10 / 50.0 - 0.02
+    assert clock.now == pytest.approx(100.0 + 10 / 50.0)
     window.close()
 
 
-def test_after_a_pause_it_does_not_rush() -> None:
+def test_after_a_pause_it_does_not_rush(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = Clock()
+    monkeypatch.setattr(window_module, "time", clock)
     window = Window("test", 50.0)
     window.show(frame())
-    time.sleep(0.3)
-    start = time.perf_counter()
+    clock.sleep(0.3)
     for _ in range(6):
         window.show(frame())
     # The first picture after the pause is due at once, the other five are not.
-    assert time.perf_counter() - start >= 5 / 50.0 - 0.02
+    assert clock.now == pytest.approx(100.3 + 5 / 50.0)
     window.close()
 
 

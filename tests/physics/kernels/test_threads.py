@@ -59,7 +59,6 @@ while interrupted_at(place):
 assert place > 100
 threads.close()
 """,
-        timeout=100.0,
     )
 
 
@@ -98,7 +97,6 @@ lengths = [len(part) for part in parts]
 assert threads.run(work, parts) == [length + 1 for length in lengths]
 threads.close()
 """,
-        timeout=60.0,
     )
 
 
@@ -122,7 +120,6 @@ for _ in range(20):
 assert len(parts[1]) == 1
 threads.close()
 """,
-        timeout=60.0,
     )
 
 
@@ -134,8 +131,7 @@ workers = [each for each in threading.enumerate() if each.name == "worker"]
 assert len(workers) == {PARTS - 1}
 del threads
 for worker in workers:
-    worker.join(10)
+    worker.join(60)
     assert not worker.is_alive()
 """,
-        timeout=60.0,
     )
