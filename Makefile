@@ -25,8 +25,9 @@ train: $(VENV)/train  ## Train an agent for about a minute, and show how well it
 web: $(VENV)/web  ## Play in the browser, and watch the trained agents
 	$(BIN)/arkanoid web
 
+# Each process begins with a half of the tests, so that most of what a file shares is made once.
 test: $(VENV)/dev  ## Run the tests (PYTEST="-k paddle" passes options on)
-	$(BIN)/python -m pytest -n 2 $(PYTEST)
+	$(BIN)/python -m pytest -n 2 --dist worksteal $(PYTEST)
 
 lint: $(VENV)/dev  ## Check style and format, and the files for GitHub
 	$(BIN)/ruff check .

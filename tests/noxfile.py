@@ -20,6 +20,8 @@ nox.needs_version = ">=2024.10"
 nox.options.default_venv_backend = "venv"
 nox.options.envdir = str(ROOT / "build" / "nox")
 PEERS = [nox.param(peer, id=peer.name) for peer in read_peers().values()]
+# As in the Makefile.
+PARALLEL = ("-n", "2", "--dist", "worksteal")
 INSTALLED = "import arkanoid, sys; sys.exit(not arkanoid.__file__.startswith(sys.prefix))"
 
 
@@ -66,7 +68,7 @@ def distcheck(session: nox.Session, kind: str) -> None:
             session.run("python", "-c", INSTALLED)
             # Otherwise copies of the same sources would replace each other's compiled kernels.
             cache = {"ARKANOID_CACHE_DIR": str(Path(folder, "cache"))}
-            session.run("python", "-m", "pytest", "-n", "2", *session.posargs, env=cache)
+            session.run("python", "-m", "pytest", *PARALLEL, *session.posargs, env=cache)
 
 
 @nox.session(reuse_venv=True)

@@ -12,7 +12,7 @@ from arkanoid.agents.experiment.runs import RunFolder
 from arkanoid.agents.experiment.settings import load_experiment
 from arkanoid.agents.learn.curves import STEP, CurveWriter, read_curve
 from arkanoid.agents.learn.training import train
-from helpers.processes import run_arkanoid, run_program
+from helpers.processes import run_program
 from helpers.runs import small
 
 # Everything that has a state is in use: a schedule, a curriculum, validation, generated levels and
@@ -97,7 +97,7 @@ def test_a_killed_and_resumed_run_equals_an_undisturbed_one(
     assert session["from"] == 0
     assert session["to"] >= 4096
     assert session["seconds"] > 0
-    run_arkanoid("train", "--resume", killed.path)
+    assert cli.main(["train", "--resume", str(killed.path)]) == 0
     assert killed.read_notes()["outcome"] == "finished"
     assert killed.read_notes()["weights"] == whole.read_notes()["weights"]
     first, second = killed.read_notes()["sessions"]

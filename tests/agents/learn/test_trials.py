@@ -176,7 +176,7 @@ def test_trials_run_side_by_side_and_share_a_study(tmp_path: Path) -> None:
 @contextmanager
 def two_at_once(folder: Path) -> Iterator[tuple[subprocess.Popen[str], list[int]]]:
     """Start a search, wait until two trials have begun; yield it and the trials' processes."""
-    words = command(folder, "--jobs", "2", "--trials", "9", "--budget", "60")
+    words = command(folder, "--jobs", "2", "--trials", "9", "--budget", "30")
     process = start_arkanoid(*words, start_new_session=True)
     trials: list[int] = []
     try:

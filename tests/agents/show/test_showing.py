@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -323,19 +324,33 @@ def test_the_mean_curve_is_read_at_the_same_decisions() -> None:
     np.testing.assert_allclose(highs, 3 * steps)
 
 
-@pytest.mark.parametrize("named", [[], *([name] for name in packaged_agents())])
+def evaluated(words: list[str], capsys: pytest.CaptureFixture[str]) -> Any:
+    """Return what `arkanoid evaluate --json` says of whole games."""
+    assert cli.main(["evaluate", *words, "--json", "--evaluation.suites", '["games"]']) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("name", packaged_agents())
 def test_packaged_agents_play_by_their_names(
-    named: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without a name the default one; all are far above the ball-follower."""
-    arguments = ["--evaluation.episodes", "20", "--evaluation.suites", '["games"]']
-    arguments += ["--evaluation.baselines", '["ball-follower"]']
-    assert cli.main(["evaluate", *named, "--json", *arguments]) == 0
-    results = json.loads(capsys.readouterr().out)["suites"]["games"]["policies"]
+    """All are far above the ball-follower."""
+    arguments = ["--evaluation.episodes", "20", "--evaluation.baselines", '["ball-follower"]']
+    results = evaluated([name, *arguments], capsys)["suites"]["games"]["policies"]
     agent, follower = (results[name]["summary"] for name in ("agent", "ball-follower"))
     assert agent["cleared"]["mean"]["estimate"] >= 0.9
     assert agent["hits"]["mean"]["low"] > 3 * follower["hits"]["mean"]["high"]
-    assert cli.main(["film", *named, str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
+    assert cli.main(["film", name, str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
+
+
+def test_without_a_name_the_default_agent_plays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["--evaluation.episodes", "1", "--evaluation.baselines", "[]"]
+    arguments += ["--env.max_decisions", "300"]
+    first, second = (evaluated([*named, *arguments], capsys) for named in ([], [DEFAULT_AGENT]))
+    assert first == second
+    assert cli.main(["film", str(tmp_path / "x.gif"), "--seconds", "0.2"]) == 0
 
 
 @pytest.mark.parametrize("name", packaged_agents())

@@ -107,7 +107,8 @@ def main() -> None:
             except BaseException:
                 print(f"{setup}: {names}", flush=True)
                 raise
-    faulthandler.cancel_dump_traceback_later()
+        # What is made next may have to be compiled, for longer than that.
+        faulthandler.cancel_dump_traceback_later()
     print(f"{refused} refused, {accepted} accepted")
 
 

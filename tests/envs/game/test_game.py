@@ -3,6 +3,7 @@
 import hashlib
 import math
 import os
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -51,8 +52,13 @@ def speed_of(world):
 
 def bricks_of(world):
     """Return the union of the world's bricks."""
-    cells = [divmod(int(cell), 11) for cell in np.flatnonzero(world.brick_hits)]
-    return union_all([box(c, 12.5 - r / 2, c + 1, 13 - r / 2) for r, c in cells])
+    return union_of_cells(tuple(np.flatnonzero(world.brick_hits).tolist()))
+
+
+@cache
+def union_of_cells(cells):
+    places = [divmod(cell, 11) for cell in cells]
+    return union_all([box(c, 12.5 - r / 2, c + 1, 13 - r / 2) for r, c in places])
 
 
 def paddle_of(world):

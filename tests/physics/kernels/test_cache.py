@@ -129,11 +129,12 @@ def test_heals_a_damaged_file(scratch: Scratch, damage: Callable[[Path], None]) 
 def test_a_flipped_bit_is_noticed(scratch: Scratch) -> None:
     """Most of them ended every later start in some exception, and some in a crash.
 
-    Each turn flips one bit in every file, and the program heals the files for the next turn.
+    Each turn flips one bit in every file, and the program heals the files for the next turn. All
+    bits of a file are flipped in `test_code_files.py`, without a program.
     """
     scratch.run()
     header = range(0, 24, 6)
-    for turn in range(16):
+    for turn in (0, 3, 4, 9, 15):
         for file in scratch.files():
             content = bytearray(file.read_bytes())
             place = header[turn] if turn < 4 else (turn - 3) * (len(content) - 1) // 12

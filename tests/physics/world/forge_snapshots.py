@@ -145,7 +145,8 @@ def main() -> None:
                 print(names, flush=True)
                 raise
             maker.restore(snapshots[0])
-    faulthandler.cancel_dump_traceback_later()
+        # What is made next may have to be compiled, for longer than that.
+        faulthandler.cancel_dump_traceback_later()
     print(f"{refused} refused, {accepted} accepted, of which {stopped} became too large")
 
 
