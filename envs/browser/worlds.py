@@ -19,7 +19,7 @@ HITS = 2 * PAIRS  # that are told at once; more than may be inside
 def describe_worlds() -> dict[str, Any]:
     """Return how a sandbox lies in memory, what its numbers mean, and scenes that are ready."""
     room = Room(bodies=ROOM, movers=ROOM, shapes=ROOM + 1, edges=MAX_EDGES * ROOM)
-    setup = Setup(room, MAX_HITS, continuous=True)
+    setup = Setup(room, MAX_HITS, rest_speed=0.0, continuous=True)
     header = setup.header
     header.shapes, header.edges = room.shapes, room.edges
     size = int(header.nbytes)
