@@ -93,8 +93,13 @@ def run(arguments: argparse.Namespace, overrides: list[tuple[str, str]]) -> int:
     check_installed(arguments.track)
     # Only now, with all settings known to be right, come the slow imports.
     from ...envs.browser.shipped import offers_module
+    from ..learn.playing import find_device
     from ..learn.starting import check_source, inherit
 
+    try:
+        find_device(experiment.training.device)
+    except SettingsError as error:
+        raise error if folder is None else SettingsError(f"{folder.config}: {error}") from None
     if folder is None:
         if source is not None:
             check_source(source, experiment)

@@ -50,16 +50,20 @@ def test_the_setting_chooses_the_trainer(trainer: str, kind: type) -> None:
 def test_without_a_graphics_card_auto_is_the_processor_and_cuda_gets_a_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """It also left the folder of a run that had not begun."""
     assert find_device("auto") == find_device("cpu") == torch.device("cpu")
     with pytest.raises(SettingsError, match=r"'training.device' = 'cuda'.*'auto' or 'cpu'"):
         find_device("cuda")
     settings = {**SMALL, "training.device": "cuda", "output": str(tmp_path)}
     assert cli.main(["train", "quick", *(f"--{key}={text}" for key, text in settings.items())]) == 2
     assert "graphics card" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.usefixtures("no_card")
-def test_a_run_that_was_trained_on_a_card_plays_without_one(tmp_path: Path) -> None:
+def test_a_run_that_was_trained_on_a_card_plays_without_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     experiment = replace(small(), output=str(tmp_path))
     folder = RunFolder.create(experiment)
     assert train(experiment, folder) == "finished"
@@ -69,6 +73,12 @@ def test_a_run_that_was_trained_on_a_card_plays_without_one(tmp_path: Path) -> N
     on_card = model.run.experiment()
     assert on_card.training.device == "cuda"
     load_policy(model, on_card)
+    # A resumed run takes no options: its file says where it is trained.
+    assert cli.main(["train", "--resume", str(folder.path)]) == 2
+    assert "finished" in capsys.readouterr().err
+    folder.add_notes(outcome="interrupted")
+    assert cli.main(["train", "--resume", str(folder.path)]) == 2
+    assert f"{folder.config}: 'training.device' = 'cuda'" in capsys.readouterr().err
     # Who asks for a card gets no other device.
     folder.config.write_text(as_on_card.replace('device = "cuda"', 'device = "cpu"'))
     with pytest.raises(SettingsError, match="graphics card"):
