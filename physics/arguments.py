@@ -97,6 +97,8 @@ def vector(name: str, value: Any) -> Vector:
 def near_all(name: str, values: Any) -> npt.NDArray[np.float64]:
     """Return points, of whose numbers the engine may take the squares, as float64 [n, 2]."""
     points = np.asarray(values, np.float64)
+    if points.shape == (0,):  # an empty list does not say that its points would be pairs
+        points = points.reshape(0, 2)
     if points.ndim != 2 or points.shape[1] != 2:
         raise ValueError(f"{name} must have the shape [n, 2], but has {list(points.shape)}")
     if not (np.abs(points) <= FARTHEST).all():
@@ -107,9 +109,10 @@ def near_all(name: str, values: Any) -> npt.NDArray[np.float64]:
 def near_each(name: str, values: Any, count: int) -> npt.NDArray[np.float64]:
     """Return such points, one for each of some bodies, or (x, y) for all of them, [n or 1, 2]."""
     given = np.asarray(values, np.float64)
-    points = near_all(name, given[None] if given.ndim == 1 else given)
-    if given.ndim == 2 and len(points) != count:
-        raise ValueError(f"{name} must have the shape [{count}, 2], but has {list(given.shape)}")
+    is_one = given.ndim == 1 and given.size > 0
+    points = near_all(name, given[None] if is_one else given)
+    if not is_one and len(points) != count:
+        raise ValueError(f"{name} must have the shape [{count}, 2], but has {list(points.shape)}")
     return points
 
 

@@ -353,6 +353,23 @@ def test_no_input_hangs_or_makes_nan(
     assert world.time == pytest.approx(3 * dt, rel=1e-15)
 
 
+@pytest.mark.parametrize(("ratio", "sag"), [(1e6, 1e-10), (1e10, 1e-6)])
+def test_a_pile_bears_very_different_masses(ratio: float, sag: float) -> None:
+    """Nothing said how different: from 1 : 1e11 on, the lightest box is pressed out."""
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        count = int(rng.integers(2, 11))
+        masses = ratio ** np.append(rng.uniform(0, 1, count - 2), [0, 1])
+        world = World([FLOOR])
+        for level, mass in enumerate(rng.permutation(masses).tolist()):
+            world.add(Body(AxisAlignedRectangle(1, 1), (0, level + 0.5), (0, 0), mass, 0))
+        for _ in range(60):
+            boxes = world.handles[1:]
+            world.place(boxes, velocity=world.velocity(boxes) - (0, 0.16))
+            world.step(1 / 60)
+        assert world.positions[1:, 1] == pytest.approx(np.arange(count) + 0.5, abs=sag)
+
+
 @pytest.mark.parametrize("continuous", [True, False])
 def test_worlds_in_which_nothing_moves(continuous: bool) -> None:
     for bodies in ([], [FLOOR], [FLOOR, Body(DISC), Body(DISC)]):

@@ -356,6 +356,16 @@ def test_rays_need_as_many_starts_as_ends() -> None:
         WORLD.query_rays([(0, math.nan)], [(1, 1)])
 
 
+def test_empty_lists_are_no_rays_and_no_bodies() -> None:
+    """A game without enemies in a frame got an error about the shape [0]."""
+    assert WORLD.query_rays([], []).bodies.tolist() == []
+    world = World([Body(Particle(1))])
+    world.place([], [], velocity=[])
+    assert world.positions.tolist() == [[0, 0]]
+    with pytest.raises(ValueError, match=r"shape \[1, 2\], but has \[0, 2\]"):
+        world.place([0], [])
+
+
 def test_a_body_of_no_category_is_found_by_nothing() -> None:
     world = World()
     world.add(Body(Particle(1), (0, 0)), category=0)
