@@ -7,6 +7,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
+from torch.utils.dlpack import from_dlpack
 
 from ...physics.kernels.one_thread import OneThread
 from ..actions import BOX, COMMANDS, as_float32, read_array
@@ -313,7 +314,7 @@ def _read_others(actions: Any, what: str) -> Any:
     if isinstance(actions, np.ndarray) or not hasattr(actions, "__dlpack__"):
         return read_array(actions, what)
     try:
-        return torch.utils.dlpack.from_dlpack(actions)
+        return from_dlpack(actions)
     except (BufferError, RuntimeError, TypeError, ValueError) as error:
         raise TypeError(f"{actions!r:.200} is not {what}, and no tensor: {error}") from error
 
