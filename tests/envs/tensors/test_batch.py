@@ -34,6 +34,10 @@ class Foreign:
     def __init__(self, tensor):
         self.tensor = tensor
 
+    def __repr__(self):
+        """A test's name is the same in each process."""
+        return f"Foreign({self.tensor!r})"
+
     def __dlpack__(self, **keywords):
         return self.tensor.__dlpack__(**keywords)
 

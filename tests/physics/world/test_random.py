@@ -24,7 +24,7 @@ from arkanoid.physics import (
     detect,
     time_of_impact,
 )
-from arkanoid.physics.tolerances import MOST_AT_ONCE
+from arkanoid.physics.tolerances import LONGEST_SERIES
 from arkanoid.physics.world.memory import setup
 from helpers.bodies import bodies_of, deepest_overlap
 from hypothesis import assume, given, settings
@@ -163,7 +163,7 @@ def is_squeezed(hits: Any) -> bool:
     times = np.concatenate([hits["time"], hits["time"]]).round(6)
     bodies = np.concatenate([hits["a"], hits["b"]])
     _, counts = np.unique(np.column_stack([times, bodies]), axis=0, return_counts=True)
-    return bool(counts.max(initial=0) > MOST_AT_ONCE // 2)
+    return bool(counts.max(initial=0) > LONGEST_SERIES // 2)
 
 
 @settings(max_examples=25, deadline=None)
