@@ -1,5 +1,7 @@
 """What all tests share: the repository's root is the package, not a folder of tests."""
 
+import contextlib
+import io
 import signal
 from pathlib import Path
 
@@ -38,6 +40,16 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     # Not a plain hook: those of a conftest are asked about what lies below its own folder only.
     config.pluginmanager.register(RootIsNotATestPackage())
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionstart() -> None:
+    """Say what is compiled before the tests: the first one for a kernel would get the lines."""
+    from arkanoid.physics.kernels import messages
+
+    with contextlib.redirect_stderr(io.StringIO()):
+        for module in messages.PARTS:
+            messages.say_compiling(module)
 
 
 @pytest.fixture

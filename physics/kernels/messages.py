@@ -8,7 +8,7 @@ CACHE_VARIABLE = "ARKANOID_CACHE_DIR"
 
 # What a kernel belongs to, by how its module's name begins below the package: the first that fits.
 # How long a part takes was measured on a core of an AMD EPYC that has nothing else to do.
-_PARTS = {
+PARTS = {
     "envs.draw.": "pictures (once; about 6 seconds)",
     "envs.observe.pixels": "pictures as observations (once; about 4 seconds)",
     "envs.observe.": "observations (once; some seconds)",
@@ -24,7 +24,7 @@ def say_compiling(module: str) -> None:
     Args:
         module: of the kernel that it compiles, as it is named below the package.
     """
-    for beginning, part in _PARTS.items():
+    for beginning, part in PARTS.items():
         if module.startswith(beginning):
             _say_once(f"compiling kernels of {part} ...")
             return

@@ -175,10 +175,7 @@ def test_parts_that_are_missing_are_refused():
 
 
 def test_forged_snapshots_do_no_harm():
-    """No crash, no hang, nothing outside its space, no other error than the promised one.
-
-    One of nine crashed.
-    """
+    """No crash, no hang, no value outside its space, no unpromised error: one of nine crashed."""
     run_python(HERE / "forge_snapshots.py", "400", "0", warnings="default", changes=CHECKED)
 
 

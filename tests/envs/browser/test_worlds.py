@@ -76,7 +76,7 @@ def shape_of(thing: Thing) -> Collider:
 def roomy_world() -> World:
     """Return an empty world with the room of a page's."""
     room = Room(bodies=ROOM, movers=ROOM, shapes=ROOM + 1, edges=MAX_EDGES * ROOM)
-    family = Family([Setup(room, MAX_HITS, continuous=True)], [0])
+    family = Family([Setup(room, MAX_HITS, rest_speed=0.0, continuous=True)], [0])
     return World.at(family.sites[0], OneThread("this world"))
 
 
