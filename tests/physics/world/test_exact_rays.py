@@ -47,6 +47,27 @@ def entry(polygon: list[Corner], start: Corner, end: Corner) -> Fraction | None:
     return max(enters, Fraction(0)) if inside else None
 
 
+def rounding(polygon: list[Corner], start: Corner, end: Corner, at: Fraction) -> float:
+    """Return by how much rounding may change the fraction at which a ray meets a polygon.
+
+    Places are known to their last digits; the flatter a ray meets a side, the more these matter.
+    """
+    reach = sum(abs(number) for corner in (start, end, *polygon) for number in corner)
+    slowest = math.inf
+    for corner, following in zip(polygon, polygon[1:] + polygon[:1], strict=True):
+        before = side_of(corner, following, start)
+        gain = side_of(corner, following, end) - before
+        if gain > 0 and Fraction(-before, gain) == at:
+            slowest = min(slowest, gain / math.dist(corner, following))
+    return ROUNDING * (1 + reach / slowest)
+
+
+def runs_along(polygon: list[Corner], start: Corner, end: Corner) -> bool:
+    """Return whether a side lies on the line of a ray."""
+    sides = [side_of(start, end, corner) for corner in polygon]
+    return sides.count(0) > 1 and (min(sides) == 0 or max(sides) == 0)
+
+
 def random_corner(rng: Rng, reach: int) -> Corner:
     x, y = rng.integers(-reach, reach + 1, 2).tolist()
     return x, y
@@ -75,15 +96,18 @@ def check_polygons(seed: int, count: int) -> None:
                     start[0] + times * (aim[0] - start[0]),
                     start[1] + times * (aim[1] - start[1]),
                 )
-            if start == end:
+            # A ray along sides of two polygons may be in the seam between them, which is solid.
+            along = sum(runs_along(polygon, start, end) for polygon in polygons)
+            if start == end or along > 1:
                 continue
             entries = [entry(polygon, start, end) for polygon in polygons]
             first = min((at for at in entries if at is not None), default=None)
             hit = world.query_ray(start, end)
             assert (hit is None) == (first is None), (polygons, start, end)
             if hit is not None and first is not None:
-                assert hit.fraction == pytest.approx(float(first), abs=ROUNDING)
                 assert entries[hit.body] == first
+                slack = rounding(polygons[hit.body], start, end, first)
+                assert hit.fraction == pytest.approx(float(first), abs=slack)
                 assert math.hypot(*hit.normal) == pytest.approx(1, abs=ROUNDING)
 
 
