@@ -131,8 +131,6 @@ class _Layout:
         self._put("actions", np.zeros(1, np.int64))
         self._put("commands", np.zeros(2))
         self._put("illegal", np.zeros(1, np.int32))
-        self._put("rewards", np.zeros(1))
-        self._put("moves", np.zeros(1, np.uint8))
         self._put("infos", np.zeros(len(INFO_FIELDS), np.int64))
         self._set(count=1)
         self._game["arrays"]["here"] = True
